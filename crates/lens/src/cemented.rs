@@ -7,8 +7,9 @@ use spectra_core::surface::Action;
 const GAS_INDEX: f64 = 1.05;
 
 impl Lens {
-    /// Puts this separation into all cemented surfaces, replacing what they state. A surface without a semi-diameter is skipped if the
-    /// separation has a depth, because the depth is measured from the edge. Returns the lens and the number of changed surfaces.
+    /// Puts this separation into all cemented surfaces, replacing the separation that they state. If the separation has a depth,
+    /// which is measured from the edge, surfaces without a semi-diameter are skipped. Returns the lens and the number of changed
+    /// surfaces.
     #[must_use]
     pub fn with_separation(mut self, separation: &Separation) -> (Self, usize) {
         let mut many = 0;

@@ -4,8 +4,8 @@ use crate::{Coating, Element, Lens, LensMedium};
 use spectra_glass::AbsorptionSubstitute;
 
 impl Lens {
-    /// Returns the coating of an element: its own, or else the lens's. A lens coating other than `ideal` does not apply to a cemented
-    /// surface between two glasses, which counts as bare.
+    /// Returns the coating of an element: its own coating, or else the coating of the lens. A cemented surface between two
+    /// glasses without a coating of its own is bare, unless the coating of the lens is `ideal`.
     #[must_use]
     pub fn coating_of(&self, element: &Element) -> Coating {
         match (&element.coating, &self.coating) {
@@ -16,20 +16,20 @@ impl Lens {
         }
     }
 
-    /// Returns the coating of the faces of a prism: its own, or else the lens's.
+    /// Returns the coating of the faces of a prism: its own coating, or else the coating of the lens.
     pub fn solid_coating_of(&self, element: &Element) -> Coating {
         element.coating.as_ref().unwrap_or(&self.coating).clone()
     }
 
-    /// Lists the media whose absorption is taken from another glass, each with its label and that glass. They are listed whether or not
-    /// absorption is switched on.
+    /// Lists the media whose absorption is taken from another glass: the label of each medium, and that glass. They are listed
+    /// whether or not absorption is switched on.
     #[must_use]
     pub fn substituted_absorption(&self) -> Vec<(&str, AbsorptionSubstitute)> {
         let lender = |m: &LensMedium| m.medium.absorption(self.year)?.lender;
         self.media.iter().filter_map(|m| Some((m.label.as_str(), lender(m)?))).collect()
     }
 
-    /// Puts this coating on all surfaces, replacing what they state.
+    /// Puts this coating on all surfaces, replacing their own coatings.
     #[must_use]
     pub fn with_coating(mut self, coating: Coating) -> Self {
         self.coating = coating;

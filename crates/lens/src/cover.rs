@@ -4,9 +4,9 @@ use crate::Lens;
 use spectra_core::cover::CoverStack;
 
 impl Lens {
-    /// Returns the lens on a camera with plates directly in front of its frame, or without them. The image plane moves back by the distance
-    /// that the plates shift the paraxial image at the reference line, and every search for the best focus looks through them. The tracer
-    /// does not know the plates: they belong to the imager.
+    /// Returns the lens on a camera with plates directly in front of its frame (`None`: without plates). The image plane moves
+    /// back by the distance that the plates shift the paraxial image at the reference line. Every search for the best focus looks
+    /// through the plates. The tracer does not know the plates, which belong to the imager.
     #[must_use]
     pub fn with_cover(mut self, cover: Option<CoverStack>) -> Self {
         let before_mm = self.cover_gap_mm();
@@ -15,8 +15,8 @@ impl Lens {
         self.with_image_gap_mm(gap_mm)
     }
 
-    /// Returns the paraxial defocus: how far behind the image plane the image of an axial point lies, mm. The point lies `object_mm` in
-    /// front of the first vertex (infinity allowed); plates in front of the frame are included.
+    /// Returns how far (mm) the paraxial image of an axial point lies behind the image plane. The point lies `object_mm` in front
+    /// of the first vertex (infinity allowed). Plates in front of the frame are included.
     #[must_use]
     pub fn paraxial_defocus_mm(&self, object_mm: f64) -> f64 {
         self.paraxial_image_gap_mm(object_mm, self.reference_nm) + self.cover_gap_mm() - self.image_gap_mm()

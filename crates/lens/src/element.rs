@@ -11,7 +11,7 @@ use spectra_core::params::Params;
 use spectra_core::surface::{Action, Surface};
 use std::sync::Arc;
 
-/// One surface of a lens with its position, its media and everything on it; or a prism.
+/// An element of a lens: one surface with its position, its media and everything on it, or a prism.
 #[derive(Clone, Debug)]
 pub struct Element {
     /// The `kind` of the surface in the lens file.
@@ -22,11 +22,11 @@ pub struct Element {
     pub solid: Option<Arc<Solid>>,
     /// Shape of the surface, and how it bends light.
     pub surface: Arc<dyn Surface>,
-    /// Bends of the axis in front of the surface, in order.
+    /// Bends of the axis in front of this surface, in order.
     pub breaks: Vec<AxisBreak>,
     /// Shift and tilt of this surface alone about its vertex. Elements that follow stay where they are.
     pub displacement: Displacement,
-    /// Whether the surface is reversed: turned by half a turn about its y axis.
+    /// Whether the surface is reversed, that is, turned by half a turn about its y axis.
     pub reversed: bool,
     /// Distance to the next vertex along the axis, mm; for the last surface, to the image plane.
     pub thickness_mm: f64,
@@ -39,13 +39,13 @@ pub struct Element {
     pub chamfer_mm: f64,
     /// Apertures besides the clear semi-diameter that limit the light at this surface.
     pub apertures: Vec<Aperture>,
-    /// Whether this surface is the aperture stop.
+    /// Whether this surface is the aperture stop of the lens.
     pub stop: bool,
     /// What the surface does to light: refract, reflect or pass it.
     pub action: Action,
-    /// Coating of this surface; if `None`, the coating of the lens.
+    /// Coating of this surface; `None` for the coating of the lens.
     pub coating: Option<Coating>,
-    /// Where the cement has separated, if this surface is cemented.
+    /// Where the cement of this surface has separated; `None` if it holds, or if the surface is not cemented.
     pub separation: Option<Separation>,
     /// Rings left on the surface by the turning of its mold.
     pub onion_rings: Option<OnionRings>,
@@ -57,16 +57,18 @@ pub struct Element {
     pub medium_before: usize,
     /// Medium behind the surface: index into [`crate::Lens::media`].
     pub medium_after: usize,
-    /// Pose of the surface in the frame of the lens. It follows from the fields above, see [`crate::Lens::arrange`].
+    /// Pose of the surface in the frame of the lens. [`crate::Lens::arrange`] computes it from the fields above.
     pub pose: Pose,
-    /// Length of the axis from the first vertex to this surface, mm: the z of the vertex if nothing is folded.
+    /// Length of the axis from the first vertex to this surface, mm: the z of the vertex if the axis is not folded.
     pub along_axis_mm: f64,
-    /// Whether light that runs forward through the lens arrives here along +z of the axis; behind a mirror it arrives against it.
+    /// Whether light that runs forward through the lens arrives here in the +z direction of the axis. Behind a mirror it arrives
+    /// in the -z direction.
     pub along: bool,
 }
 
 impl Element {
-    /// Creates a refracting surface (or a stop, if its kind is one) on the axis. [`crate::Lens::arrange`] must still place it.
+    /// Creates a refracting surface (or a stop, if `surface` is one) on the axis. The media are indices into
+    /// [`crate::Lens::media`]. [`crate::Lens::arrange`] must still place the surface.
     #[must_use]
     pub fn new(kind: &str, surface: Arc<dyn Surface>, medium_before: usize, medium_after: usize) -> Self {
         let stop = surface.is_stop();
@@ -104,7 +106,7 @@ impl Element {
         self.pose.origin_mm.z
     }
 
-    /// Curvature at the vertex along x and y, 1/mm, with its sign reversed if the surface is reversed.
+    /// Curvature at the vertex along x and y, 1/mm. Its sign is reversed if the surface is reversed.
     #[must_use]
     pub fn vertex_curvature_per_mm(&self) -> (f64, f64) {
         let (x, y) = self.surface.vertex_curvature_per_mm();

@@ -8,12 +8,12 @@
 use crate::Lens;
 use spectra_core::surface::Action;
 
-/// The first-order figures of a lens at one wavelength. Distances are in mm, measured as the names say.
+/// The first-order (paraxial) figures of a lens at one wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstOrder {
-    /// Wavelength, nm; `None` if every medium was held at its stated index.
+    /// Wavelength, nm; `None` if every medium has its stated index.
     pub wavelength_nm: Option<f64>,
-    /// Effective focal length, mm.
+    /// Effective focal length, mm; positive for a converging lens.
     pub efl_mm: f64,
     /// Back focal length: from the last vertex to the rear focal point, mm.
     pub bfl_mm: f64,
@@ -107,7 +107,7 @@ impl Lens {
         m
     }
 
-    /// Returns 1 if light that runs forward leaves the lens toward +z, otherwise -1.
+    /// Returns 1 if light that runs forward leaves the lens in the +z direction, otherwise -1.
     pub fn sense_behind(&self) -> f64 {
         let mirrors = self.elements.iter().filter(|e| e.action == Action::Reflect).count();
         if mirrors.is_multiple_of(2) { 1.0 } else { -1.0 }
@@ -119,15 +119,16 @@ impl Lens {
         self.first_order_in(Section::Y, wavelength_nm)
     }
 
-    /// Computes the first-order figures in one section of the lens at a wavelength, nm. A cylinder has power in only one section.
+    /// Computes the first-order figures in one section of the lens at a wavelength, nm. The sections of a lens with cylinders
+    /// differ.
     #[must_use]
     pub fn first_order_in(&self, section: Section, wavelength_nm: f64) -> FirstOrder {
         let by = self.first_order_by(section, &|m| self.index(m, wavelength_nm));
         FirstOrder { wavelength_nm: Some(wavelength_nm), ..by }
     }
 
-    /// Computes the first-order figures in the y-z section with every medium at its stated index. If none is stated, the index of the
-    /// dispersion formula at the reference line is used.
+    /// Computes the first-order figures in the y-z section with every medium at the index that the prescription states. A medium
+    /// without a stated index has the index of its formula at the reference line.
     #[must_use]
     pub fn first_order_at_stated_nd(&self) -> FirstOrder {
         let index = |m: usize| self.media[m].stated_nd.unwrap_or_else(|| self.index(m, self.reference_nm));
@@ -178,15 +179,15 @@ impl Lens {
         }
     }
 
-    /// Position of the paraxial image of an axial point, mm behind the last vertex, in the y-z section. The point lies
+    /// Returns the distance (mm) from the last vertex to the paraxial image of an axial point, in the y-z section. The point lies
     /// `object_mm` in front of the first vertex (infinity allowed).
     #[must_use]
     pub fn paraxial_image_gap_mm(&self, object_mm: f64, wavelength_nm: f64) -> f64 {
         self.paraxial_image_gap_in_mm(Section::Y, object_mm, wavelength_nm)
     }
 
-    /// Position of the paraxial image of an axial point in one section of the lens, mm behind the last vertex. The point lies `object_mm`
-    /// in front of the first vertex (infinity allowed).
+    /// Returns the distance (mm) from the last vertex to the paraxial image of an axial point, in one section of the lens. The
+    /// point lies `object_mm` in front of the first vertex (infinity allowed).
     #[must_use]
     pub fn paraxial_image_gap_in_mm(&self, section: Section, object_mm: f64, wavelength_nm: f64) -> f64 {
         let m = self.matrix(0..self.elements.len(), section, &|medium| self.index(medium, wavelength_nm));
@@ -196,7 +197,8 @@ impl Lens {
         -height / slope
     }
 
-    /// Lateral magnification of an object `object_mm` in front of the first vertex, in the y-z section; negative means upside down.
+    /// Returns the lateral magnification of an object `object_mm` in front of the first vertex, in the y-z section; negative
+    /// means upside down.
     #[must_use]
     pub fn paraxial_magnification(&self, object_mm: f64, wavelength_nm: f64) -> f64 {
         let m = self.matrix(0..self.elements.len(), Section::Y, &|medium| self.index(medium, wavelength_nm));

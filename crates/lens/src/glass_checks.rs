@@ -21,17 +21,18 @@ struct Disperser<'a> {
 }
 
 impl Lens {
-    /// Returns a warning for each sign of a misread index or Abbe number. One sign is axial color above 0.4 % of the focal length where two
-    /// or more glasses refract. The other is two media of the same index with Abbe numbers more than 5 apart, one of which is far from
-    /// every glass of the catalogue. A lens with a glass that was not measured at both lines gets no warning about its axial color.
+    /// Returns a warning for each sign of a misread index or Abbe number. One sign is axial color above 0.4 % of the focal length
+    /// where two or more glasses refract. The other is a pair of media with the same index and Abbe numbers more than 5 apart, if
+    /// one of them is far from every glass of the catalogue. There is no warning about axial color if a glass was not measured at
+    /// both lines.
     #[must_use]
     pub fn glass_warnings(&self) -> Vec<String> {
         let dispersers = self.dispersers();
         self.color_doubt(&dispersers).into_iter().chain(twins(&dispersers)).collect()
     }
 
-    /// Returns how far the focus of the blue line lies behind the focus of the red line, mm. The lines are the outer ones of the lens's
-    /// Abbe numbers, F and C as a rule.
+    /// Returns how far (mm) the focus of the blue line lies behind the focus of the red line. These are the outer lines of the
+    /// lens's Abbe numbers, usually F and C.
     #[must_use]
     pub fn axial_color_mm(&self) -> f64 {
         let back_mm = |nm: f64| self.first_order(nm).bfl_mm;

@@ -11,9 +11,9 @@ pub struct Group {
     pub name: String,
     /// Indices of the elements in the group.
     pub elements: Range<usize>,
-    /// Index of the element about whose vertex the group is tilted: its first, unless the lens is reversed.
+    /// Index of the element about whose vertex the group is tilted: the first of the group, unless the lens is reversed.
     pub about: usize,
-    /// Shift and tilt of the whole group about that vertex: its misalignment.
+    /// Shift and tilt of the whole group about the vertex of element `about`.
     pub displacement: Displacement,
 }
 

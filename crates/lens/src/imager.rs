@@ -6,8 +6,8 @@ use spectra_glass::Medium;
 use std::sync::Arc;
 
 impl Lens {
-    /// Adds the imager as the last element, in the image plane. Within a polygon (corners in mm, frame of the image plane) it
-    /// reflects a fraction of the light as a mirror does and passes the rest. `reflectance` returns this fraction at a wavelength
+    /// Adds the imager as a mirror in the image plane, behind all other elements. Within a polygon (corners in mm, frame of the
+    /// image plane) it reflects a fraction of the light and passes the rest. `reflectance` returns this fraction at a wavelength
     /// in nm.
     #[must_use]
     pub fn with_reflecting_imager(mut self, reflectance: impl Fn(f64) -> f64, corners_mm: Vec<[f64; 2]>) -> Self {

@@ -22,7 +22,7 @@ pub struct LensMedium {
 }
 
 impl LensMedium {
-    /// Returns air with the index 1: glass catalogues state indices relative to air.
+    /// Returns air, which has index 1 because glass catalogues state indices relative to air.
     #[must_use]
     pub fn air() -> Self {
         Self { medium: Medium::Air, stated_nd: Some(1.0), label: "air".to_owned() }
@@ -32,25 +32,25 @@ impl LensMedium {
 /// A lens: its surfaces, the media between them, and the source of its figures.
 #[derive(Clone, Debug)]
 pub struct Lens {
-    /// Name of the lens for people.
+    /// Name of the lens, as people call it.
     pub name: String,
     /// Year of design; `None` if not known.
     pub year: Option<i32>,
-    /// F-number in the name of the lens: its full aperture, as makers round it.
+    /// F-number in the name of the lens, as makers round it: the f-number at full aperture.
     pub nominal_f_number: Option<f64>,
     /// Factor by which the lens squeezes the picture horizontally, as makers round it; 1 for a lens that is not anamorphic.
     pub squeeze: f64,
-    /// Patent and example; `None` if not known.
+    /// Patent and example from which the lens comes; `None` if not known.
     pub patent: Option<String>,
     /// Maker of the lens; `None` if not known.
     pub maker: Option<String>,
     /// Source of the figures of the prescription.
     pub source: Option<String>,
-    /// Doubts about the figures, and choices that were made.
+    /// Doubts about the figures, and choices that were made in the lens file.
     pub remark: Option<String>,
-    /// Origin of the semi-diameters; `None` if not known.
+    /// Origin of the semi-diameters in the lens file; `None` if not known.
     pub rims: Option<Rims>,
-    /// Wavelength of the reference line, nm: focus and first-order figures refer to it.
+    /// Wavelength of the reference line, nm. Focus and first-order figures are computed at it.
     pub reference_nm: f64,
     /// Lines of the Abbe numbers that belong to the reference line.
     pub abbe_lines: LineTriple,
@@ -58,28 +58,28 @@ pub struct Lens {
     pub elements: Vec<Element>,
     /// Groups of surfaces that move together.
     pub groups: Vec<Group>,
-    /// Focusing laws of the groups; if empty, the whole lens moves.
+    /// Focusing laws of the groups; if there is none, the whole lens moves.
     pub focus_laws: Vec<FocusLaw>,
     /// Object distance from the first vertex at which the lens is focused, mm; infinite as read from the file.
     pub focused_mm: f64,
     /// Bends of the axis between the last surface and the image plane.
     pub image_breaks: Vec<AxisBreak>,
-    /// Plates directly in front of the frame of the camera, if there are any: see [`Lens::with_cover`].
+    /// Plates directly in front of the frame of the camera, if there are any; see [`Lens::with_cover`].
     pub cover: Option<CoverStack>,
-    /// Pose of the image plane. It follows from the fields above, see [`Lens::arrange`].
+    /// Pose of the image plane in the frame of the lens. [`Lens::arrange`] computes it from the fields above.
     pub image_pose: Pose,
-    /// Length of the axis from the first vertex to the image plane, mm: the z of the plane if nothing is folded. It is also set by
-    /// [`Lens::arrange`].
+    /// Length of the axis from the first vertex to the image plane, mm: the z of the plane if the axis is not folded.
+    /// [`Lens::arrange`] computes it, too.
     pub image_along_axis_mm: f64,
     /// Media of the lens; number 0 is air.
     pub media: Vec<LensMedium>,
     /// Coating of every surface that has none of its own.
     pub coating: Coating,
-    /// Whether [`Lens::coating`] is assumed, as usual for lenses of its time, and not known.
+    /// Whether [`Lens::coating`] is assumed (usual for lenses of its time), instead of known.
     pub coating_assumed: bool,
-    /// Whether glass absorbs light, if its catalogue says how much.
+    /// Whether glass absorbs light, as far as data are known.
     pub absorption: bool,
-    /// Notes on how the lens is set up; nothing in them needs to be fixed.
+    /// Notes on how the lens is set up, which need no action.
     pub notes: Vec<String>,
     /// Warnings about the lens file, for example a glass that disagrees with the stated index.
     pub warnings: Vec<String>,
@@ -124,8 +124,8 @@ impl Lens {
         self.elements.iter().position(|e| e.stop)
     }
 
-    /// Places every surface and the image plane by the thicknesses, bends of the axis, displacements and groups. Call this after changing
-    /// any of them.
+    /// Computes the poses of every surface and the image plane from the thicknesses, bends of the axis, displacements and groups.
+    /// Call it after changing any of them.
     pub fn arrange(&mut self) {
         let mut axis = Pose::IDENTITY;
         let mut along_axis_mm = 0.0;
@@ -171,14 +171,14 @@ impl Lens {
         }
     }
 
-    /// Whether the lens is symmetric about its axis: nothing is displaced or folded, and every surface and aperture
-    /// is round.
+    /// Returns whether the lens is symmetric about its axis: no surface is displaced, the axis is not folded, and every surface
+    /// and aperture is round.
     #[must_use]
     pub fn has_axis_of_revolution(&self) -> bool {
         symmetry::has_axis_of_revolution(&self.elements, &self.image_pose)
     }
 
-    /// Removes all rims and apertures, so that a ray ends only if it misses a surface or is totally reflected.
+    /// Removes all clear semi-diameters and apertures, so that a ray ends only if it misses a surface or is totally reflected.
     pub fn remove_rims(&mut self) {
         for element in &mut self.elements {
             element.semi_diameter_mm = None;
@@ -186,13 +186,13 @@ impl Lens {
         }
     }
 
-    /// Distance of the image plane from the last vertex, mm.
+    /// Distance from the last vertex to the image plane, mm.
     #[must_use]
     pub fn image_gap_mm(&self) -> f64 {
         self.elements.last().map_or(0.0, |e| e.thickness_mm)
     }
 
-    /// Returns the lens with another distance from the last vertex to the image plane, mm.
+    /// Returns the lens with `gap_mm` as the distance from the last vertex to the image plane.
     #[must_use]
     pub fn with_image_gap_mm(mut self, gap_mm: f64) -> Self {
         if let Some(last) = self.elements.last_mut() {
@@ -211,7 +211,7 @@ impl Lens {
         self
     }
 
-    /// Refractive index of medium `medium` at a wavelength (nm) by its dispersion formula.
+    /// Refractive index of medium number `medium` at a wavelength (nm), by its dispersion formula.
     #[must_use]
     pub fn index(&self, medium: usize, wavelength_nm: f64) -> f64 {
         self.media[medium].medium.index(wavelength_nm)

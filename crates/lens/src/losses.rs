@@ -8,7 +8,8 @@ use spectra_glass::{AbsorptionSubstitute, Medium};
 const DARK_STOPS: f64 = 1.0;
 
 impl Lens {
-    /// Describes the coatings and the absorption that are counted, and which of them are assumed: `bare (assumed for 1927), glass absorbs`.
+    /// Describes in words which losses at coatings and in glass are counted, and which of them are assumed, such as `bare
+    /// (assumed for 1927), glass absorbs`.
     #[must_use]
     pub fn losses(&self) -> String {
         let refracts = |e: &&crate::Element| e.action == Action::Refract && e.medium_before != e.medium_after;
@@ -65,8 +66,8 @@ impl Lens {
     }
 
     /// Returns the medium whose assumed absorption takes most light on the axis, and the glass whose absorption is assumed for
-    /// it. The number is the total loss by all assumed absorptions at the reference line, in stops. Returns `None` below one
-    /// stop, or if glass does not absorb.
+    /// it. The number is the total loss by all assumed absorptions at the reference line, in stops. `None` if this loss is below
+    /// one stop, or if glass does not absorb.
     #[must_use]
     pub fn darkened_by_assumption(&self) -> Option<(&str, AbsorptionSubstitute, f64)> {
         let nm = self.reference_nm;
@@ -83,7 +84,7 @@ impl Lens {
         (self.absorption && all >= DARK_STOPS).then(|| (self.media[at].label.as_str(), lender, all))
     }
 
-    /// Whether the lens loses no light at surfaces or in glass by assumption.
+    /// Returns whether the lens is treated as free of losses at surfaces and in glass.
     #[must_use]
     pub fn is_lossless(&self) -> bool {
         let ideal = |e: &crate::Element| e.coating.as_ref().unwrap_or(&self.coating) == &Coating::Ideal;

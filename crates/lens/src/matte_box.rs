@@ -21,9 +21,8 @@ pub struct MatteBox {
 }
 
 impl Lens {
-    /// Puts the lens behind a matte box: an element in front of the first one, which clips light in both directions and which
-    /// every search for a pupil sees. Everything else, including the origin, stays where it is; the numbers of all other elements
-    /// increase by one.
+    /// Puts a matte box in front of the lens. It becomes the first element, clips light in both directions, and is seen by every
+    /// search for a pupil. Other elements and the origin stay where they are; the numbers of the other elements increase by one.
     #[must_use]
     pub fn behind_matte_box(mut self, opening: &MatteBox) -> Self {
         let (half_width_mm, half_height_mm) = (0.5 * opening.width_mm, 0.5 * opening.height_mm);

@@ -5,17 +5,17 @@ use crate::Lens;
 /// A misalignment of one group of surfaces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Misalignment {
-    /// Shift along x and y, mm; if `None`, as in the lens file.
+    /// Shift along x and y, mm; if `None`, the shift in the lens file stays.
     pub decenter_mm: Option<[f64; 2]>,
-    /// Tilts about x, y and z through the vertex of the group's first surface, rad; if `None`, as in the lens file.
+    /// Tilts about x, y and z through the vertex of the group's first surface, rad; if `None`, the tilt in the lens file stays.
     pub tilt_rad: Option<[f64; 3]>,
     /// Shift along the axis toward the image, mm.
     pub shift_mm: f64,
 }
 
 impl Lens {
-    /// Returns the lens with the group of this name misaligned; `None` if there is no such group. The other groups and
-    /// the image plane stay where they are.
+    /// Returns the lens with the group called `group` misaligned; `None` if there is no such group. The other groups and the
+    /// image plane stay where they are.
     #[must_use]
     pub fn with_misalignment(mut self, group: &str, by: &Misalignment) -> Option<Self> {
         let at = self.groups.iter().position(|g| g.name == group)?;

@@ -9,8 +9,8 @@ use spectra_core::params::{Length, Positive};
 use spectra_core::{Loss, RayBatch};
 use std::f64::consts::PI;
 
-/// A ring-shaped height error of a surface: a cosine of the distance from the axis. The height is so small that it does not move the
-/// point where a ray meets the surface; only the slope matters.
+/// A ring-shaped height error of a surface: a cosine of the distance from the axis. The height is too small to move the point
+/// where a ray meets the surface; only the slope matters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OnionRings {
     /// Distance from ring to ring, mm.
@@ -39,8 +39,8 @@ impl OnionRingsForm {
     }
 }
 
-/// Data about a batch of rays at a surface, needed to correct their directions for onion rings. The surface has refracted or
-/// reflected the rays as if it had no rings.
+/// The directions and indices of a batch of rays at a surface, needed to correct the rays for onion rings. The surface has
+/// already refracted or reflected the rays as if it had no rings.
 pub struct Bent<'a> {
     /// Components of the unit directions in front of the surface.
     pub before: [&'a [f64]; 3],
@@ -60,7 +60,8 @@ impl OnionRings {
         -PI * self.height_mm / self.period_mm * sin_cos_turns(turns - turns.floor()).0
     }
 
-    /// Corrects the directions of live rays, in the frame of the surface, for the rings. Returns how many ended by total reflection.
+    /// Corrects the directions of live rays, in the frame of the surface, for the rings. Returns how many rays ended by total
+    /// reflection.
     pub fn bend(&self, rays: &mut RayBatch, bent: &Bent<'_>) -> usize {
         let c = rays.columns_mut();
         let mut ended = 0;

@@ -18,7 +18,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The pose of the lens itself: no shift, no rotation.
+    /// The pose of the lens frame itself, without shift or rotation.
     pub const IDENTITY: Self = Self { origin_mm: DVec3::ZERO, rotation: DMat3::IDENTITY };
 
     /// Converts a local point to the frame of the lens, mm.
@@ -45,20 +45,20 @@ impl Pose {
         self.rotation.transpose() * direction
     }
 
-    /// Returns the pose, in the frame of the lens, of something whose pose in this local frame is `inner`.
+    /// Combines two poses: `inner` is a pose in this local frame, and the result is the same pose in the frame of the lens.
     #[must_use]
     pub fn then(&self, inner: &Self) -> Self {
         Self { origin_mm: self.point(inner.origin_mm), rotation: self.rotation * inner.rotation }
     }
 
-    /// Returns the pose that undoes this one.
+    /// Returns the inverse pose, which converts from the frame of the lens to the local frame.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.transpose();
         Self { origin_mm: -(rotation * self.origin_mm), rotation }
     }
 
-    /// Returns the pose moved by a distance along its local z axis, mm.
+    /// Returns the pose moved by `distance_mm` along its local z axis.
     #[must_use]
     pub fn advanced(&self, distance_mm: f64) -> Self {
         // On the axis no multiplication is done, so a lens without tilts keeps its sums bit for bit.
@@ -70,13 +70,14 @@ impl Pose {
         Self { origin_mm, ..*self }
     }
 
-    /// Whether the pose lies on the axis of the lens, without rotation.
+    /// Returns whether the pose lies on the axis of the lens and has no rotation.
     #[must_use]
     pub fn is_on_axis(&self) -> bool {
         self.rotation == DMat3::IDENTITY && self.origin_mm.x == 0.0 && self.origin_mm.y == 0.0
     }
 
-    /// Returns the pose with z reversed and x and y unchanged: a left-handed frame, in which a picture stays unmirrored.
+    /// Returns the pose with its z axis reversed and x and y unchanged. The frame becomes left-handed; a picture in it stays
+    /// unmirrored.
     #[must_use]
     pub fn facing_back(&self) -> Self {
         let r = self.rotation;
@@ -91,22 +92,23 @@ impl Pose {
     }
 }
 
-/// A decenter and a tilt: of one surface, of a group, or of the axis itself.
+/// A decenter and a tilt of one surface, of a group, or of the axis itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Displacement {
     /// Shift along x and y, mm.
     pub decenter_mm: [f64; 2],
     /// Right-handed rotations about x, y and z, rad.
     pub tilt_rad: [f64; 3],
-    /// Whether the tilts about z, y, x (in that order) come before the shift. If false, the shift comes first, then tilts about x, y, z.
+    /// Order of shift and tilts. If true, the tilts about z, y and x (in that order) come before the shift; if false, the shift
+    /// comes first, then the tilts about x, y and z.
     pub tilt_first: bool,
 }
 
 impl Displacement {
-    /// The displacement that moves nothing.
+    /// The displacement without shift or tilt.
     pub const NONE: Self = Self { decenter_mm: [0.0; 2], tilt_rad: [0.0; 3], tilt_first: false };
 
-    /// Whether this displacement moves nothing.
+    /// Returns whether this displacement has neither shift nor tilt.
     #[must_use]
     pub fn is_none(&self) -> bool {
         self.decenter_mm == [0.0; 2] && self.tilt_rad == [0.0; 3]

@@ -100,7 +100,7 @@ fn yes() -> bool {
     true
 }
 
-/// Returns the JSON Schema of a lens file. Its surfaces refer to the definition `surface`, see
+/// Returns the JSON Schema of a lens file. Its surfaces refer to the definition `surface`; see
 /// [`spectra_core::registry::definitions`].
 #[must_use]
 pub fn lens_schema(generator: &mut SchemaGenerator) -> Schema {
@@ -115,7 +115,7 @@ pub fn load(name: &str, resources: &dyn Resources) -> Result<Lens, Faults> {
     parse(&resources.document(name, &["lenses"], &[".yaml"])?, resources)
 }
 
-/// Builds a lens from its parsed file.
+/// Builds a lens from the parsed content of its file.
 ///
 /// # Errors
 /// All faults of the file, with their places.
@@ -228,7 +228,7 @@ fn focus_law(node: &StageNode, groups: &[Group]) -> Result<FocusLaw, Faults> {
     Ok(FocusLaw { group, travel })
 }
 
-/// Creates a fault at `key` for a group that the lens does not have.
+/// Creates a fault at `key` for a group `name` that the lens does not have. `groups` are the groups that it has, for the hint.
 pub fn unknown_group(params: &Params, key: &str, name: &str, groups: &[Group]) -> Fault {
     let fault = params.fault(key, format!("the lens has no group `{name}`"));
     let known: Vec<&str> = groups.iter().map(|g| g.name.as_str()).collect();

@@ -7,7 +7,7 @@ use spectra_core::surface::Action;
 /// The reason why a lens cannot be reversed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReverseError {
-    /// The lens has an odd number of mirrors and sends light back to the object side, so reversed it has no front.
+    /// The lens has an odd number of mirrors and sends light back to the object side, so it has no front when reversed.
     #[error("a lens with an odd number of mirrors cannot be reversed: its image is on the object side")]
     OddMirrors,
     /// The lens has a prism, whose axis enters and leaves by different faces.
@@ -28,9 +28,9 @@ fn undone(d: Displacement) -> Displacement {
 }
 
 impl Lens {
-    /// Returns the lens turned by half a turn about its y axis, so that the last surface is the first. The image plane stands at the
-    /// paraxial focus for infinity, or at the same distance as before if that focus does not lie behind the lens. The reversed lens focuses
-    /// as a whole, and bends of the axis in front of the image plane are removed.
+    /// Returns the lens turned by half a turn about its y axis, so that the last surface is the first. The image plane is placed
+    /// at the paraxial focus for infinity. If that focus does not lie behind the lens, the image distance stays as before. The
+    /// reversed lens focuses as a whole, and bends of the axis in front of the image plane are removed.
     ///
     /// # Errors
     /// [`ReverseError`] if the lens has an odd number of mirrors or a prism.

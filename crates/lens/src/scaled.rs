@@ -10,18 +10,18 @@ use std::sync::Arc;
 /// The reason why a lens cannot be scaled.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScaleError {
-    /// A surface of a kind that does not support scaling; its number, from 1, and its kind.
+    /// A surface is of a kind that cannot be scaled: the surface's number, from 1, and its kind.
     #[error("surface {0} (`{1}`) does not say how it scales")]
     Surface(usize, String),
-    /// A surface has a drawing as its aperture, which is not scaled; its number, from 1.
+    /// A surface has a drawing as its aperture, which cannot be scaled: the surface's number, from 1.
     #[error("surface {0} has a drawing as its aperture, which is not scaled")]
     Drawing(usize),
 }
 
 impl Lens {
-    /// Returns the lens with all its lengths multiplied by `factor`, above 0: radii, gaps, rims, apertures, displacements, and how groups
-    /// move. Layers that act by the wavelength stay unchanged: coatings, gaps of air in cement, the lines of a grating, the rings left by a
-    /// tool.
+    /// Returns the lens with all its lengths multiplied by `factor` (above 0): radii, gaps, rims, apertures, displacements, and
+    /// the travel of groups. Structures whose effect depends on the wavelength stay unchanged: coatings, gaps of air in cement,
+    /// the lines of a grating, and onion rings.
     ///
     /// # Errors
     /// [`ScaleError`] if a surface or an aperture cannot be scaled.

@@ -9,19 +9,19 @@ use serde_json::json;
 use spectra_core::params::Kinds;
 use std::borrow::Cow;
 
-/// Returns the schema of the keys that every surface may have besides the parameters of its kind, as a map.
+/// Returns the schema of a map with the keys that every surface may have in addition to the parameters of its kind.
 #[must_use]
 pub fn surface_keys(generator: &mut SchemaGenerator) -> Schema {
     SurfaceKeys::json_schema(generator)
 }
 
-/// Returns the schema of the keys that every coating may have besides the parameters of its kind, as a map.
+/// Returns the schema of a map with the keys that every coating may have in addition to the parameters of its kind.
 #[must_use]
 pub fn coating_keys(generator: &mut SchemaGenerator) -> Schema {
     CoatingKeys::json_schema(generator)
 }
 
-/// Returns the schema of the keys that every aperture may have besides the parameters of its shape, as a map.
+/// Returns the schema of a map with the keys that every aperture may have in addition to the parameters of its shape.
 #[must_use]
 pub fn aperture_keys(generator: &mut SchemaGenerator) -> Schema {
     ApertureKeys::json_schema(generator)

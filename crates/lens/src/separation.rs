@@ -11,7 +11,7 @@ use serde::Deserialize;
 use spectra_core::params::{Deferred, Faults, Length, Params, Positive, StageNode};
 use spectra_core::resources::Resources;
 
-/// The key of a separation in a lens file.
+/// The key in a lens file for separated cement: a thin gap of air in a cemented surface.
 pub const KEY: &str = "separation";
 const NM_PER_MM: f64 = 1e6;
 
@@ -36,15 +36,15 @@ pub struct SeparationForm {
 pub struct Separation {
     /// Width of the gap, nm; if it has a depth, the width at the clear edge of the surface.
     pub gap_nm: f64,
-    /// Depth (mm) from the clear edge inward at which the width of the gap has narrowed to 0. `None` if the width is the same
-    /// everywhere.
+    /// Depth (mm) from the clear edge inward at which the gap has narrowed to 0. `None` if the gap has the same width everywhere.
     pub depth_mm: Option<f64>,
     /// Where the gap is: all over the surface if empty, otherwise where all of these apertures let light pass.
     pub places: Vec<Aperture>,
 }
 
 impl Separation {
-    /// Width of the gap at a point of the surface (x, y in mm), nm; 0 where the cement holds.
+    /// Returns the width of the gap (nm) at a point of the surface (x, y in mm); 0 where the cement holds. `semi_diameter_mm` is
+    /// the semi-diameter of the surface.
     #[must_use]
     pub fn gap_nm(&self, [x_mm, y_mm]: [f64; 2], semi_diameter_mm: Option<f64>) -> f64 {
         let (Some(depth_mm), Some(edge_mm)) = (self.depth_mm, semi_diameter_mm) else { return self.gap_nm };
@@ -52,8 +52,8 @@ impl Separation {
         self.gap_nm * (1.0 - inward_mm / depth_mm).clamp(0.0, 1.0)
     }
 
-    /// Returns the fraction of the light that meets the gap at a point of the surface (x, y in mm), and the gap as a coating. Returns
-    /// `None` where the cement holds.
+    /// Returns the fraction of the light that meets the gap at a point of the surface (x, y in mm), and the gap as a coating.
+    /// Returns `None` where the cement holds. `semi_diameter_mm` is the semi-diameter of the surface.
     pub fn at(&self, place: [f64; 2], semi_diameter_mm: Option<f64>) -> Option<(f64, Coating)> {
         let thickness_nm = self.gap_nm(place, semi_diameter_mm);
         let through = |aperture: &Aperture| aperture.transmittance(place[0], place[1], semi_diameter_mm);

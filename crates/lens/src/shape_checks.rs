@@ -14,9 +14,10 @@ const RIM: f64 = 0.95;
 const TOUCH_MM: f64 = 1e-6;
 
 impl Lens {
-    /// Returns a warning, with a hint, for each sign of a mistake in the prescription: neighbors that meet within their clear
-    /// semi-diameters, an image of distant objects in front of the last surface or of the whole lens, or a mirror that
-    /// sends light away from the next surface. Lenses with a bent axis are not checked, and those with mirrors only for the last sign.
+    /// Returns a warning, with a hint, for each sign of a mistake in the prescription. One sign is neighbors that meet within
+    /// their clear semi-diameters. Others are an image of distant objects in front of the last surface or of the whole lens, and
+    /// a mirror that sends light away from the next surface. Lenses with a bent axis are not checked, and lenses with mirrors
+    /// only for the last sign.
     #[must_use]
     pub fn prescription_warnings(&self) -> Vec<String> {
         let straight = |e: &Element| {

@@ -46,11 +46,12 @@ pub struct Solid {
     pub exit: Pose,
     /// Length of the axis inside the prism, mm.
     pub inside_mm: f64,
-    /// Length of the axis inside, divided by the index of the glass relative to the medium outside, mm: the length that first order counts.
+    /// Length of the axis inside the prism over the index of its glass (relative to the medium outside), mm. First-order optics
+    /// uses this length.
     pub reduced_mm: f64,
 }
 
-/// The reason why corners make no valid prism, or why the axis does not pass it.
+/// The reason why corners form no valid prism, or why the axis does not pass it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SolidError {
     /// Fewer than three corners, or two of them in the same place.
@@ -59,10 +60,10 @@ pub enum SolidError {
     /// Two faces of the outline cross; their numbers, from 1.
     #[error("faces {0} and {1} of the prism cross")]
     Crossing(usize, usize),
-    /// The axis misses the prism.
+    /// The axis of the lens does not hit the prism.
     #[error("the axis does not meet the prism")]
     Beside,
-    /// The axis never leaves the prism.
+    /// The axis of the lens never leaves the prism.
     #[error("light along the axis does not leave the prism")]
     Trapped,
 }
@@ -93,9 +94,10 @@ impl Solid {
         }
     }
 
-    /// Creates a prism from its corners, silvered faces (numbers from 0), half the width along x (mm), and the medium of its
-    /// glass. Corners are y and z in mm, in either sense of rotation. `relative_index`, the index of the glass over that of the
-    /// medium outside, is used to trace the axis.
+    /// Creates a prism from its corners (y, z in mm, in the frame of the prism, in either sense of rotation). Face k runs from
+    /// corner k to the next, k from 0; `silvered` lists the faces that are mirrors. `half_width_mm` is half the width along x
+    /// (infinite: no ends), and `medium` the index of the glass in [`crate::Lens::media`]. `relative_index`, the index of the
+    /// glass over that of the medium outside, is used to trace the optical axis through the prism.
     ///
     /// # Errors
     /// [`SolidError`] if the corners make no valid outline or the axis does not pass the prism.
@@ -146,8 +148,8 @@ impl Solid {
         Ok(own)
     }
 
-    /// Returns the corners of a prism whose two sides, each `side_mm` long, meet at the top at an apex angle of `apex_rad`. The axis meets
-    /// the middle of the first side at the angle of incidence `incidence_rad`.
+    /// Returns the corners (y, z in mm) of a triangular prism. Two sides, each `side_mm` long, meet at the top at an apex angle
+    /// of `apex_rad`. The axis meets the middle of the first side at the angle of incidence `incidence_rad`.
     #[must_use]
     pub fn of_apex(apex_rad: f64, side_mm: f64, incidence_rad: f64) -> Vec<[f64; 2]> {
         let (s, c) = (math::sin(incidence_rad), math::cos(incidence_rad));
@@ -164,7 +166,7 @@ impl Solid {
         self.corners.iter().map(|c| c.to_array()).collect()
     }
 
-    /// Radius about the origin of the prism that contains its outline, mm.
+    /// Radius of a circle about the origin of the prism that contains its outline, mm.
     #[must_use]
     pub fn reach_mm(&self) -> f64 {
         self.corners.iter().map(|c| c.length()).fold(0.0, f64::max)
@@ -199,8 +201,8 @@ impl Solid {
     /// meets.
     ///
     /// # Errors
-    /// [`Loss::Missed`] if the ray meets no face, [`Loss::Vignetted`] if it meets a ground side, and [`Loss::Absorbed`] if it cannot get in
-    /// or out.
+    /// [`Loss::Missed`] if the ray meets no face, [`Loss::Vignetted`] if it meets a ground end, and [`Loss::Absorbed`] if it
+    /// cannot enter or leave the glass.
     pub fn pass(
         &self,
         position: DVec3,
@@ -274,15 +276,15 @@ pub struct FaceHit {
     pub direction: DVec3,
     /// Unit normal of the face, pointing against the light.
     pub normal: DVec3,
-    /// Cosine of the angle of incidence.
+    /// Cosine of the angle of incidence at the face.
     pub cosine: f64,
-    /// What the light does at the face.
+    /// Action of the face on the light.
     pub bend: FaceEvent,
 }
 
 impl FaceHit {
-    /// Returns what the face does to s and p light: by its coating between a medium of index `n` and glass of index `inside`, or by its
-    /// silver.
+    /// Returns the effect of the face on s and p light, by its coating between a medium of index `n` and glass of index `inside`,
+    /// or by its silver. The last argument holds the coating and the reflectance of the silver.
     pub fn polarizes(
         &self,
         [n, inside]: [f64; 2],

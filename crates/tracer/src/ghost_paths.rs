@@ -3,8 +3,8 @@
 use crate::{Path, Tracer, Travel};
 
 impl Tracer {
-    /// Returns the elements that reflect a part of the light that they should pass. These are the refracting surfaces other than
-    /// gratings, scattering surfaces, and surfaces with an ideal coating and sound cement.
+    /// Returns the elements that can cause ghosts, because they reflect a part of the light that they should pass. These are the
+    /// refracting surfaces, except gratings, surfaces that scatter, and surfaces with an ideal coating and sound cement.
     #[must_use]
     pub fn reflecting(&self) -> Vec<usize> {
         (0..self.surfaces()).filter(|at| self.passage(*at).reflects()).collect()
@@ -12,8 +12,8 @@ impl Tracer {
 }
 
 impl Path {
-    /// Returns all paths of forward light through a lens of this many elements with exactly `order` reflections, an even number, at these
-    /// `surfaces` (ascending). For order 2 these are all pairs of surfaces.
+    /// Returns all paths of forward light through a lens of `elements` elements with exactly `order` reflections, an even number.
+    /// Reflections occur only at `surfaces`, indices in ascending order. For order 2 these are all pairs of surfaces.
     #[must_use]
     pub fn ghosts(elements: usize, surfaces: &[usize], order: usize) -> Vec<Self> {
         let mut all = Vec::new();
@@ -22,7 +22,7 @@ impl Path {
         all
     }
 
-    /// Returns the path without its last step if that is at this element; otherwise the whole path.
+    /// Returns the path without its last step if that step is at `element`; otherwise the whole path.
     #[must_use]
     pub fn before(mut self, element: usize) -> Self {
         if self.steps().last().is_some_and(|step| step.element == element) {

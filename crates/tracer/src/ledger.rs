@@ -10,11 +10,11 @@ use spectra_core::{Loss, RayBatch};
 /// The losses of the light of a path at one of its steps, in the unit of the rays' weights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepLedger {
-    /// Light that did not hit the surface.
+    /// Light that did not hit the surface at all.
     pub missed: f64,
-    /// Light that hit the surface outside its clear aperture: the rim, the stop.
+    /// Light that hit the surface outside its clear aperture, such as the rim or the stop.
     pub vignetted: f64,
-    /// Light absorbed by the glass on the way there, by a mirror, or by the surface itself.
+    /// Light absorbed by the glass in front of the surface, by a mirror, or by the surface itself.
     pub absorbed: f64,
     /// Light scattered by layers on the surface, which is traced as another kind of light.
     pub scattered: f64,
@@ -35,14 +35,14 @@ impl StepLedger {
 pub struct Ledger {
     /// Weight of the rays that entered the lens.
     pub launched: f64,
-    /// Weight of the rays that left it at the path's end.
+    /// Weight of the rays that left the lens at the end of the path.
     pub arrived: f64,
     /// One entry per step of the path.
     pub steps: Vec<StepLedger>,
 }
 
 impl Ledger {
-    /// Returns the light lost from this step on. From the last reflection of a path on, these losses belong to no shorter path.
+    /// Returns the light lost from step `step` on. Losses from the last reflection of a path on belong to no shorter path.
     #[must_use]
     pub fn lost_from(&self, step: usize) -> StepLedger {
         self.steps[step..].iter().fold(StepLedger::default(), |sum, s| StepLedger {

@@ -11,7 +11,7 @@ use crate::Travel;
 pub enum Interaction {
     /// The element acts as the prescription says: a glass surface refracts, a mirror reflects, a stop passes light.
     AsBuilt,
-    /// A refracting surface reflects: this is light that the designer did not want.
+    /// A refracting surface reflects a part of the light, which the designer did not intend.
     Reflect,
 }
 
@@ -37,7 +37,7 @@ pub struct Path {
     steps: Vec<PathStep>,
 }
 
-/// The reason why a list of reflections is not a path.
+/// The reason why a list of reflections does not form a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PathError {
     /// The lens has no such element.
@@ -45,13 +45,13 @@ pub enum PathError {
     NoElement {
         /// Index of the requested element.
         element: usize,
-        /// Number of elements.
+        /// Number of elements that the lens has.
         elements: usize,
     },
-    /// Light that was reflected cannot reach the next reflection.
+    /// Light from one reflection cannot reach the next reflection.
     #[error("light reflected by surface {} does not reach surface {} next", .from + 1, .to + 1)]
     OutOfReach {
-        /// Index of the element that reflects.
+        /// Index of the element that reflects the light.
         from: usize,
         /// Index of the element that should reflect next.
         to: usize,
@@ -59,7 +59,7 @@ pub enum PathError {
 }
 
 impl Path {
-    /// Returns the straight path through a lens of this many elements.
+    /// Returns the straight path through a lens of `elements` elements.
     #[must_use]
     pub fn through(elements: usize, travel: Travel) -> Self {
         let step = |element| PathStep { element, act: Interaction::AsBuilt, travel };
@@ -70,9 +70,9 @@ impl Path {
         Self { enters: travel, leaves: travel, steps }
     }
 
-    /// Returns the path with these reflections, in order, through a lens of this many elements. For example, `[7, 3]` enters at the front,
-    /// is reflected by element 7 and by element 3, and leaves at the rear. With an odd number of reflections the light leaves where it
-    /// entered; without reflections this is [`Path::through`].
+    /// Returns the path with these reflections, in order, through a lens of `elements` elements. For example, `[7, 3]` with light
+    /// that enters at the front means: it is reflected by element 7, then by element 3, and leaves at the rear. After an odd
+    /// number of reflections the light leaves where it entered. If there are no reflections this is [`Path::through`].
     ///
     /// # Errors
     /// [`PathError`] if an element does not exist or the light cannot reach the next reflection.
@@ -124,24 +124,24 @@ impl Path {
         self.steps.pop();
     }
 
-    /// Returns the steps, in the order of the light.
+    /// Returns the steps, in the order in which light takes them.
     #[must_use]
     pub fn steps(&self) -> &[PathStep] {
         &self.steps
     }
 
-    /// Lists the refracting elements at which the path is reflected, in order.
+    /// Iterates over the refracting elements at which the path is reflected, in order.
     pub fn reflections(&self) -> impl Iterator<Item = usize> + '_ {
         self.steps.iter().filter(|s| s.act == Interaction::Reflect).map(|s| s.element)
     }
 
-    /// Direction in which the path enters: forward at the front, backward at the rear.
+    /// Direction in which light enters the path: forward at the front, backward at the rear.
     #[must_use]
     pub fn enters(&self) -> Travel {
         self.enters
     }
 
-    /// Direction in which the path leaves: forward at the rear, backward at the front.
+    /// Direction in which light leaves the path: forward at the rear, backward at the front.
     #[must_use]
     pub fn leaves(&self) -> Travel {
         self.leaves

@@ -11,18 +11,18 @@ use crate::{Interaction, Ledger, Path, Travel};
 pub struct PathSearch<'a> {
     /// Number of elements of the lens.
     pub elements: usize,
-    /// Indices of the elements that reflect, ascending.
+    /// Indices of the elements that may reflect, ascending.
     pub surfaces: &'a [usize],
     /// Largest number of reflections of a path.
     pub order: usize,
-    /// Light below which a branch with more than two reflections is cut, in the unit of the ledgers.
+    /// Amount of light below which a branch with more than two reflections is cut, in the unit of the ledgers.
     pub least: f64,
 }
 
 impl PathSearch<'_> {
-    /// Follows a path and all paths that branch off it. `came` is the light that it has at its last reflection. `visit` gets each path with
-    /// the light that it begins with, and returns its ledger; it must use the same rays for all paths. Returns the light that is reflected
-    /// once more and not followed.
+    /// Follows the path with these `reflections` and all paths that branch off it. `came` is the light of the path at its last
+    /// reflection. `visit` gets each path and the light with which it begins, traces it and returns its ledger; it must use the
+    /// same rays for all paths. Returns the light of branches that are not followed.
     ///
     /// # Panics
     /// If the reflections cannot follow one another.

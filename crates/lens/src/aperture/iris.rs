@@ -5,12 +5,12 @@ use spectra_core::isa::Vectorized;
 use spectra_core::loss::ALIVE;
 use spectra_core::math;
 
-/// The blades of an iris that close a stop.
+/// The blades of an iris that forms a stop.
 ///
-/// The opening has one corner between two blades; each side is an arc of the blade's radius, or straight. While the
-/// blade's radius equals that of the opening, as wide open on most lenses, the opening is a circle. Stopped down it becomes a
-/// polygon with bulging sides. The semi-diameter of the stop is that of the circle of equal area, so an
-/// f-number means the same amount of light whatever the blades.
+/// The opening has one corner between each two blades; each side is an arc of the blade's radius, or straight. The opening is a
+/// circle if the blade's radius equals the radius of the opening, as in most lenses wide open. Stopped down it becomes a polygon
+/// with bulging sides. The semi-diameter of the stop is the radius of the circle of equal area, so an f-number means the same
+/// amount of light whatever the blades.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iris {
     /// Number of blades, at least 3.
@@ -21,7 +21,8 @@ pub struct Iris {
     pub rotation_rad: f64,
 }
 
-/// The opening of an iris at one size: the area where all its disks overlap (or, with straight blades, all its half-planes).
+/// The opening of an iris at one size. Each edge of a blade lies on a circle, or on a line if blades are straight. The opening is
+/// the area inside all of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opening {
     /// Unit vectors from the center to the middle of each side.
@@ -34,7 +35,7 @@ pub struct Opening {
 }
 
 impl Iris {
-    /// Returns the opening whose area equals that of a circle of this radius, mm.
+    /// Returns the opening whose area equals the area of a circle with the radius `semi_diameter_mm`.
     #[must_use]
     pub fn opening(&self, semi_diameter_mm: f64) -> Opening {
         let corner_mm = self.corner_radius_mm(semi_diameter_mm);
@@ -86,7 +87,7 @@ impl Iris {
 }
 
 impl Opening {
-    /// Whether a point, mm from the center, lies in the opening.
+    /// Returns whether a point, x and y in mm from the center, lies in the opening.
     #[must_use]
     pub fn contains(&self, x_mm: f64, y_mm: f64) -> bool {
         if x_mm * x_mm + y_mm * y_mm > self.corner_mm * self.corner_mm {
@@ -101,7 +102,7 @@ impl Opening {
         })
     }
 
-    /// Returns the edge of the opening as points, counterclockwise, mm from its center; each side is cut into this many pieces.
+    /// Returns the edge of the opening as points (mm from its center), counterclockwise. Each side is cut into `pieces` pieces.
     #[must_use]
     pub fn outline(&self, pieces: u32) -> Vec<[f64; 2]> {
         let half = std::f64::consts::PI / self.sides.len() as f64;

@@ -13,10 +13,11 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// Creates a mask of this many pixels, `width_mm` wide. The rows run from the top, each from the left; values are 0 to 1.
+    /// Creates a mask from `width_px` by `height_px` pixels that is `width_mm` wide. Rows of `transmittances` (0 to 1) run from
+    /// the top, each from the left.
     ///
     /// # Panics
-    /// If the number of values is not the number of pixels; the reader has counted them.
+    /// If `transmittances` does not have `width_px * height_px` values.
     #[must_use]
     pub fn new(width_px: usize, height_px: usize, width_mm: f64, transmittances: Arc<[f32]>) -> Self {
         assert_eq!(transmittances.len(), width_px * height_px);
@@ -28,7 +29,7 @@ impl Mask {
         Self { pitch_mm: self.pitch_mm * factor, ..self.clone() }
     }
 
-    /// Transmittance of the pixel at a point, mm from the center of the picture; 0 outside the picture.
+    /// Transmittance of the pixel at a point (x and y in mm from the center of the picture); 0 outside the picture.
     #[must_use]
     pub fn transmittance(&self, x_mm: f64, y_mm: f64) -> f64 {
         let column = x_mm / self.pitch_mm + 0.5 * self.width_px as f64;

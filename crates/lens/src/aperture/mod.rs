@@ -23,11 +23,11 @@ pub struct Aperture {
     pub shape: ApertureShape,
     /// Center of the aperture in the frame of the surface, mm.
     pub center_mm: [f64; 2],
-    /// Whether the aperture stops light that falls inside it. If false, it stops light that falls outside.
+    /// Whether the aperture stops light inside its shape. If false, it stops light outside its shape.
     pub obscures: bool,
 }
 
-/// The shape of an aperture, about its center.
+/// The shape of an aperture, relative to the aperture's center.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ApertureShape {
     /// The area between two circles; `inner_mm` may be 0, `outer_mm` infinite.
@@ -62,8 +62,8 @@ pub enum ApertureShape {
 }
 
 impl Aperture {
-    /// Fraction of the light that passes at a point of the surface, mm: 0 or 1, or a value between for a gray mask.
-    /// `semi_diameter_mm` is the semi-diameter of the surface, which sizes an iris.
+    /// Returns the fraction of the light that passes at a point of the surface (mm): 0 or 1, or a value between for a gray mask.
+    /// `semi_diameter_mm`, the semi-diameter of the surface, sets the size of an iris.
     #[must_use]
     pub fn transmittance(&self, x_mm: f64, y_mm: f64, semi_diameter_mm: Option<f64>) -> f64 {
         let (x, y) = (x_mm - self.center_mm[0], y_mm - self.center_mm[1]);
@@ -89,15 +89,16 @@ impl Aperture {
         if self.obscures { 1.0 - inside } else { inside }
     }
 
-    /// Whether the aperture is symmetric about the axis.
+    /// Returns whether the aperture is symmetric about the axis.
     #[must_use]
     pub fn is_round(&self) -> bool {
         self.center_mm == [0.0; 2] && matches!(self.shape, ApertureShape::Ring { .. })
     }
 
     /// Returns the edge of the aperture as closed rings (mm, frame of the surface): outer rings counterclockwise, holes
-    /// clockwise. Each side, or a 24th of a circle, is cut into `pieces`; each side of an iris into twice as many. Returns `None`
-    /// for a gray mask, which has no edge, and for an edge that is not closed or not finite.
+    /// clockwise. `semi_diameter_mm`, the semi-diameter of the surface, is needed only for an iris. Each side, or each 24th of a
+    /// circle, is cut into `pieces`; each side of an iris into twice as many; a drawing keeps its own corners. Returns `None` for
+    /// a gray mask, for an iris without a semi-diameter, and for an edge that is not closed or not finite.
     #[must_use]
     pub fn rings(&self, semi_diameter_mm: Option<f64>, pieces: u32) -> Option<Vec<Vec<[f64; 2]>>> {
         let around = |a: f64, b: f64| -> Vec<[f64; 2]> {
@@ -154,7 +155,7 @@ impl Aperture {
         Some(rings)
     }
 
-    /// Radius about the vertex outside which nothing passes, mm; infinite if the aperture obscures or is an iris.
+    /// Radius about the vertex outside which no light passes, mm; infinite if the aperture obscures or is an iris.
     #[must_use]
     pub fn reach_mm(&self) -> f64 {
         if self.obscures {
@@ -173,7 +174,8 @@ impl Aperture {
         reach + (x * x + y * y).sqrt()
     }
 
-    /// Returns the opening between the blades if the aperture is an iris and the surface has a semi-diameter, mm.
+    /// Returns the opening between the blades. `None` unless the aperture is an iris and the semi-diameter of the surface (mm) is
+    /// given.
     pub fn opening(&self, semi_diameter_mm: Option<f64>) -> Option<Opening> {
         match &self.shape {
             ApertureShape::Iris(iris) => semi_diameter_mm.map(|size| iris.opening(size)),
@@ -181,8 +183,9 @@ impl Aperture {
         }
     }
 
-    /// Ends the live rays of the batch that the aperture stops, and multiplies the weight of the others by its transmittance. The rays are
-    /// in the frame of the surface; `number` is the number of the surface, recorded in the rays that end. Returns how many ended.
+    /// Ends the live rays of the batch that the aperture stops, and multiplies the weights of the others by its transmittance.
+    /// The rays are in the frame of the surface. `number` is the number of the surface, recorded in rays that end. Returns how
+    /// many ended.
     pub fn clip(&self, rays: &mut RayBatch, number: u32, semi_diameter_mm: Option<f64>) -> usize {
         let stopped = Loss::Vignetted.state(number);
         let c = rays.columns_mut();
@@ -202,8 +205,8 @@ impl Aperture {
         ended
     }
 
-    /// Ends the live rays of the batch that an iris stops, like [`Aperture::clip`], using the opening from [`Aperture::opening`]. Returns
-    /// how many ended.
+    /// Ends the live rays of the batch that miss the opening of an iris, like [`Aperture::clip`]. `opening` comes from
+    /// [`Aperture::opening`]. Returns how many ended.
     pub fn clip_by(&self, opening: &Opening, rays: &mut RayBatch, number: u32) -> usize {
         let isa = rays.isa();
         let Self { center_mm, obscures, .. } = *self;

@@ -162,7 +162,7 @@ impl JsonSchema for ApertureForm {
 const MAX_MASK_BYTES: u64 = 64 << 20;
 const MAX_MASK_SIDE: u32 = 8192;
 
-/// Reads one aperture or a list of them, as lens files and scenes write them.
+/// Reads one aperture or a list of apertures, as lens files and scenes write them.
 ///
 /// # Errors
 /// Faults in the apertures, each with its place; faults in a drawing, with their place in the drawing.

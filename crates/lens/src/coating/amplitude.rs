@@ -7,8 +7,8 @@ use super::stack::{Complex, Stack, StackLayer};
 use super::{Coating, Transmittance};
 use std::borrow::Cow;
 
-/// The effect of a surface on light, in terms of power: the fractions of s and p light, and the product of the s amplitude and the
-/// conjugate of the p amplitude. The quantity U + i V of the light is multiplied by that product.
+/// The effect of a surface on the power and polarization of light. It consists of the fractions of s and p light, and the product
+/// of the s amplitude and the conjugate p amplitude. The quantity U + i V of the light is multiplied by that product.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polarizing {
     /// Fraction of the power of s light.
@@ -20,13 +20,14 @@ pub struct Polarizing {
 }
 
 impl Polarizing {
-    /// Returns an effect that leaves this fraction of light in any state of polarization; `mirrored` if the light is reflected.
+    /// Returns an effect that leaves the fraction `part` of the light, whatever its polarization. `mirrored` says that the light
+    /// is reflected.
     pub fn evenly(part: f64, mirrored: bool) -> Self {
         // A perfect conductor shifts the phase of s light by half a wave, but not that of p light, because its axis turns.
         Self { s: part, p: part, mixed: [if mirrored { -part } else { part }, 0.0] }
     }
 
-    /// Mixes two effects: the fraction `part` of the light meets `other`, the rest this one.
+    /// Mixes two effects: the fraction `part` of the light undergoes `other`, the rest this effect.
     pub fn beside(self, part: f64, other: Self) -> Self {
         let between = |a: f64, b: f64| a + part * (b - a);
         Self {
@@ -48,16 +49,16 @@ impl Polarizing {
     }
 }
 
-/// A coating in a form from which amplitudes are computed.
+/// A coating, prepared for the computation of amplitudes.
 pub enum Amplitudes<'a> {
-    /// A stack of layers, possibly empty.
+    /// A stack of layers; without layers it is bare glass.
     Stack(Cow<'a, Stack>),
-    /// A coating that gives only powers, without phases.
+    /// A coating that yields only powers, without phases.
     Powers(&'a Coating),
 }
 
 impl<'a> Amplitudes<'a> {
-    /// Converts a coating to this form.
+    /// Prepares a coating for the computation of amplitudes.
     #[must_use]
     pub fn of(coating: &'a Coating) -> Self {
         match coating {
@@ -70,8 +71,8 @@ impl<'a> Amplitudes<'a> {
         }
     }
 
-    /// Computes the effect on light that passes from a medium of index `n` into one of index `n_after`, at this cosine of the angle of
-    /// incidence and wavelength, nm.
+    /// Computes the effect on light that passes from a medium of index `n` into a medium of index `n_after`. `cosine` is the
+    /// cosine of the angle of incidence.
     pub fn through(&self, n: f64, n_after: f64, cosine: f64, wavelength_nm: f64) -> Polarizing {
         match self {
             Self::Stack(stack) => {
@@ -84,8 +85,8 @@ impl<'a> Amplitudes<'a> {
         }
     }
 
-    /// Computes the effect on light that is reflected in a medium of index `n` from one of index `n_after`, at this cosine of the angle of
-    /// incidence and wavelength, nm. Total reflection shifts the phases of s and p light against each other.
+    /// Computes the effect on light that is reflected in a medium of index `n` by a surface to a medium of index `n_after`.
+    /// `cosine` is the cosine of the angle of incidence. Total reflection shifts the phases of s and p light against each other.
     pub fn back(&self, n: f64, n_after: f64, cosine: f64, wavelength_nm: f64) -> Polarizing {
         match self {
             Self::Stack(stack) => {

@@ -29,7 +29,7 @@ pub struct Films<const N: usize> {
     pub(super) turn_nm: [f64; N],
 }
 
-/// The quantities that a batch kernel needs about the two sides of a surface: see the head of this file.
+/// Quantities that a batch kernel needs about the two sides of a surface, as defined at the head of this file.
 #[derive(Clone, Copy, Debug)]
 pub struct Sides {
     n: f64,
@@ -40,7 +40,7 @@ pub struct Sides {
 }
 
 impl Sides {
-    /// Creates the quantities from both indices and `h`, the versine of the angle by which light is bent.
+    /// Creates the quantities from the indices on both sides and `h`, the versine (1 - cos) of the angle by which light is bent.
     #[inline(always)]
     pub fn of(n: f64, n_after: f64, h: f64) -> Self {
         let step = n_after - n;
@@ -59,7 +59,7 @@ impl Sides {
         (self.u * self.u / (step * step + 2.0 * self.n * self.n_after * self.h)).sqrt().min(1.0)
     }
 
-    /// Fraction of unpolarized light that bare glass transmits: the formula of `bare`, whose two numerators are equal.
+    /// Fraction of unpolarized light that bare glass transmits, by a shorter form of Fresnel's equations.
     #[inline(always)]
     pub fn bare(&self) -> f64 {
         let Self { n, n_after, u, v, .. } = *self;
@@ -76,9 +76,8 @@ impl<const N: usize> Films<N> {
         Self { square, per_square: square.map(|s| 1.0 / s), turn_nm: layers.map(|[_, nm]| TAU * nm) }
     }
 
-    /// Returns how often the angle must be halved for the series to hold, for light of the wavelength `shortest_nm` or longer,
-    /// between media of which the lower index is `low`. Returns `None` if that takes more than 5 halvings or a value is not a
-    /// number.
+    /// Returns how often the angle must be halved for the series to hold, for wavelengths of `shortest_nm` or longer. `low` is
+    /// the lower index of the two media. Returns `None` if that takes more than 5 halvings, or if a value is NaN.
     pub fn halvings(&self, shortest_nm: f64, low: f64) -> Option<u32> {
         let largest = self.square.iter().zip(&self.turn_nm).map(|(square, turn_nm)| {
             let turn = turn_nm / shortest_nm;
@@ -88,10 +87,10 @@ impl<const N: usize> Films<N> {
         (0..=MOST_HALVINGS).find(good)
     }
 
-    /// Fraction of unpolarized light that the layers transmit, at one over the wavelength, 1/nm, with the angle halved `H` times. It is the
-    /// mean of T = 4 eta eta' / ((eta a + eta' d)^2 + (eta eta' x + y)^2) for both polarizations. [a, i x; i y, d] is the product of the
-    /// layers' matrices from the lower index on. For light in the plane of incidence, numerator and denominator are both multiplied by the
-    /// cosines.
+    /// Returns the fraction of unpolarized light that the layers transmit. `per_nm` is one over the wavelength, 1/nm, and `H` the
+    /// number of halvings. The result is the mean of T = 4 eta eta' / ((eta a + eta' d)^2 + (eta eta' x + y)^2) for both
+    /// polarizations. [a, i x; i y, d] is the product of the layers' matrices from the lower index on. For light in the plane of
+    /// incidence, numerator and denominator are both multiplied by the cosines.
     #[inline(always)]
     pub fn passes<const H: usize>(&self, sides: &Sides, per_nm: f64) -> f64 {
         let Sides { n, n_after, h, u, v } = *sides;

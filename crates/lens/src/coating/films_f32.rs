@@ -25,7 +25,7 @@ pub const CHUNK: usize = 64;
 /// A column of [`CHUNK`] values in single precision.
 pub type Singles = [f32; CHUNK];
 
-/// Clear layers as in [`Films`], in single precision.
+/// A stack of clear layers like [`Films`], in single precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmsF32<const N: usize> {
     square: [f32; N],
@@ -37,8 +37,8 @@ pub struct FilmsF32<const N: usize> {
 }
 
 impl<const N: usize> FilmsF32<N> {
-    /// Converts layers for light of the wavelength `shortest_nm` or longer, between media of which the lower index is `low`.
-    /// Returns `None` if single precision is not accurate enough.
+    /// Converts layers to single precision, for wavelengths of `shortest_nm` or longer. `low` is the lower index of the two
+    /// media. Returns `None` if single precision is not accurate enough.
     pub fn of(films: &Films<N>, shortest_nm: f64, low: f64) -> Option<Self> {
         let largest = |h: u32| REACH * f64::from(1_u32 << (2 * h));
         let good = |h: &u32| {

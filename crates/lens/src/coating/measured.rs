@@ -5,7 +5,7 @@ use spectra_core::spectral::Grid;
 use spectra_spectrum::table::Table;
 use spectra_spectrum::{Kind, SpectrumError};
 
-/// A measured transmittance by wavelength, used at every angle: a maker's curve says no more.
+/// A measured transmittance by wavelength, which is used at every angle, because a maker's curve says no more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredCoating {
     /// Transmittance for each nanometer, on [`GRID`].
@@ -16,7 +16,7 @@ pub struct MeasuredCoating {
 const GRID: Grid = Grid { start_nm: 200.0, step_nm: 1.0, count: 2301 };
 
 impl MeasuredCoating {
-    /// Tabulates a transmittance given by wavelength, nm; values are clamped to 0 to 1.
+    /// Creates a table from a function that returns the transmittance at a wavelength (nm). Values are clamped to 0 to 1.
     #[must_use]
     pub fn new(passes: impl Fn(f64) -> f64) -> Self {
         Self { passes: GRID.wavelengths_nm().map(|nm| passes(nm).clamp(0.0, 1.0)).collect() }

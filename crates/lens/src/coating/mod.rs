@@ -62,14 +62,14 @@ pub struct Transmittance {
     pub p: f64,
 }
 
-/// The reflectance by polarization: fractions of the power.
+/// The reflectance by polarization: fractions of the power that are reflected.
 pub type Reflectance = Transmittance;
 
 impl Transmittance {
-    /// The transmittance 1: everything passes.
+    /// The transmittance 1, at which all light passes.
     pub const FULL: Self = Self { s: 1.0, p: 1.0 };
 
-    /// Returns the transmittance of unpolarized light: the mean of both.
+    /// Returns the transmittance of unpolarized light: the mean of `s` and `p`.
     #[must_use]
     #[inline(always)]
     pub fn mean(self) -> f64 {
@@ -84,8 +84,9 @@ impl Coating {
         Self::Layer { index, thickness_nm: 0.25 * wavelength_nm / index }
     }
 
-    /// Transmittance from a medium of index `n` into one of index `n_after`, at this cosine of the angle of incidence
-    /// (0 to 1) and wavelength in air, nm. It is 0 on total reflection; otherwise `Ideal` passes everything.
+    /// Returns the transmittance from a medium of index `n` into a medium of index `n_after`. The cosine of the angle of
+    /// incidence is 0 to 1, and the wavelength is in air. The result is 0 on total reflection; otherwise [`Coating::Ideal`]
+    /// passes all light.
     #[must_use]
     pub fn transmittance(&self, n: f64, n_after: f64, cos_incidence: f64, wavelength_nm: f64) -> Transmittance {
         let sine = n * (1.0 - cos_incidence * cos_incidence).max(0.0).sqrt();
@@ -105,8 +106,9 @@ impl Coating {
 }
 
 impl Coating {
-    /// Reflectance, with arguments as for [`Coating::transmittance`]. It is 1 on total reflection, otherwise the fraction that is neither
-    /// transmitted nor absorbed in the coating. A measured coating reflects everything that it does not transmit.
+    /// Returns the reflectance, with arguments as for [`Coating::transmittance`]. It is 1 on total reflection, otherwise the
+    /// fraction that is neither transmitted nor absorbed in the coating. A measured coating reflects all light that it does not
+    /// transmit.
     #[must_use]
     pub fn reflectance(&self, n: f64, n_after: f64, cos_incidence: f64, wavelength_nm: f64) -> Reflectance {
         let cos_square = cos_square_beyond(n, n_after, cos_incidence);
@@ -133,7 +135,7 @@ fn cos_square_beyond(n: f64, n_after: f64, cos_incidence: f64) -> f64 {
     1.0 - sine * sine / (n_after * n_after)
 }
 
-/// Reflectance of bare glass; the same as [`Coating::reflectance`] of [`Coating::Bare`].
+/// Returns the reflectance of bare glass, like [`Coating::reflectance`] of [`Coating::Bare`].
 #[inline(always)]
 pub fn bare_reflectance(n: f64, n_after: f64, cos_incidence: f64) -> Reflectance {
     let cos_square = cos_square_beyond(n, n_after, cos_incidence);

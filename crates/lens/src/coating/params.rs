@@ -71,17 +71,17 @@ impl JsonSchema for CoatingForm {
 /// Largest file of a measurement that is read, bytes.
 const MAX_BYTES: u64 = 4 << 20;
 
-/// A coating, and whether it is assumed or known.
+/// A coating that a file states, and whether it is assumed or known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StatedCoating {
     /// Coating that the file states.
     pub coating: Coating,
-    /// Whether the coating is assumed, as usual for lenses of its time.
+    /// Whether the coating is assumed (usual for lenses of its time), instead of known.
     pub assumed: bool,
 }
 
-/// Reads a coating: the name of a kind without parameters (`bare`, `three-layer`), a map, or the name of a file. A file `my-stack.yaml`
-/// holds a coating, `my-coating.csv` a measured reflectance or transmittance.
+/// Reads a coating: the name of a kind without parameters (`bare`, `three-layer`), a map, or the name of a file. A YAML file such
+/// as `my-stack.yaml` holds a coating. A CSV file such as `my-coating.csv` holds a measured reflectance or transmittance.
 ///
 /// # Errors
 /// Faults in the coating, each with its place; faults in the file, with their place in the file.
@@ -103,7 +103,8 @@ pub fn read_stated_coating(node: &StageNode, resources: &dyn Resources) -> Resul
 }
 
 impl Coating {
-    /// Returns the coating of this name: a kind without parameters, or a file. Faults quote it as the command-line option `--coating`.
+    /// Returns the coating of this name: a kind without parameters, or a file. Faults quote the name as the command-line option
+    /// `--coating`.
     ///
     /// # Errors
     /// A fault if there is no such kind or file; faults in the file.

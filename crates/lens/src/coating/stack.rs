@@ -17,7 +17,7 @@ const TO_NM: f64 = 2500.0;
 /// Imaginary part of the phase above which a layer lets nothing through.
 const OPAQUE: f64 = 300.0;
 
-/// One layer of a stack.
+/// One layer of a stack: its thickness and its complex index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StackLayer {
     thickness_nm: f64,
@@ -32,7 +32,7 @@ impl StackLayer {
         Self { thickness_nm, index: vec![[n, k]] }
     }
 
-    /// Creates a layer of this thickness (nm) and tabulates its n and k by wavelength (nm).
+    /// Creates a layer of this thickness (nm). `n_and_k` returns its n and k at a wavelength (nm), of which a table is made.
     #[must_use]
     pub fn dispersive(thickness_nm: f64, n_and_k: impl Fn(f64) -> [f64; 2]) -> Self {
         let count = (TO_NM - FROM_NM) as usize + 1;
@@ -49,14 +49,14 @@ impl StackLayer {
     }
 }
 
-/// The layers on a surface. The first one is next to the air, that is, to the medium of the lower index.
+/// The layers on a surface, in order. The first one is next to the air, or to the medium of the lower index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stack {
     layers: Vec<StackLayer>,
 }
 
 impl Stack {
-    /// Creates a stack of layers in order, the first one next to the air.
+    /// Creates a stack of layers, the first one next to the air.
     #[must_use]
     pub fn new(layers: Vec<StackLayer>) -> Self {
         Self { layers }
@@ -68,13 +68,14 @@ impl Stack {
         self.layers.len()
     }
 
-    /// Whether the stack has no layers: bare glass.
+    /// Returns whether the stack has no layers, which is bare glass.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.layers.is_empty()
     }
 
-    /// Returns the index and the thickness (nm) of each layer if there are `N` layers and none of them absorbs or disperses.
+    /// Returns the index and the thickness (nm) of each layer. `None` unless there are `N` layers that neither absorb nor
+    /// disperse.
     pub fn clear_layers<const N: usize>(&self) -> Option<[[f64; 2]; N]> {
         let clear = |layer: &StackLayer| match layer.index[..] {
             [[n, 0.0]] => Some([n, layer.thickness_nm]),
@@ -84,7 +85,8 @@ impl Stack {
         layers.try_into().ok()
     }
 
-    /// Transmittance between two media of these indices at a wavelength, nm. The cosines are those of the angles in the two media.
+    /// Returns the transmittance between two media at a wavelength, nm. The first array holds the indices of the two media, the
+    /// second the cosines of the angles in them.
     #[must_use]
     pub fn transmittance(&self, [n, n_after]: [f64; 2], [c, c_after]: [f64; 2], wavelength_nm: f64) -> Transmittance {
         let tangential = n * n * (1.0 - c * c);
@@ -101,8 +103,8 @@ impl Stack {
         Transmittance { s: through(s, front[0], back[0]), p: through(p, front[1], back[1]) }
     }
 
-    /// Reflectance for light that arrives in the medium of the first index, with arguments as for [`Stack::transmittance`]. An absorbing
-    /// stack has different reflectances on its two sides.
+    /// Returns the reflectance for light that arrives in the first medium, with arguments as for [`Stack::transmittance`]. An
+    /// absorbing stack has different reflectances on its two sides.
     #[must_use]
     pub fn reflectance(&self, indices: [f64; 2], [c, _]: [f64; 2], wavelength_nm: f64) -> Reflectance {
         let [s, p] = self.amplitudes(indices, c, wavelength_nm).map(|[_, back]| back.size2());

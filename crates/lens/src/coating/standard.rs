@@ -89,14 +89,15 @@ coating! {
 }
 
 impl Coating {
-    /// Returns a quarter wave of magnesium fluoride at 550 nm: its reflectance is 1.3 % on glass of index 1.52 and 0.4 % on 1.7.
+    /// Returns a quarter-wave layer of magnesium fluoride for 550 nm. Its reflectance is 1.3 % on glass of index 1.52 and 0.4 %
+    /// on 1.7.
     #[must_use]
     pub fn single_layer() -> Self {
         Self::quarter_wave(MAGNESIUM_FLUORIDE, SINGLE_NM)
     }
 
-    /// Returns a quarter wave of index 1.38, half a wave of 2.10 and a quarter wave of 1.72 at 515 nm: the reflectance is below 0.5 % from
-    /// 430 to 650 nm on glass of index 1.51 to 1.78.
+    /// Returns three layers for 515 nm: a quarter wave of index 1.38, half a wave of 2.10 and a quarter wave of 1.72. The
+    /// reflectance is below 0.5 % from 430 to 650 nm on glass of index 1.51 to 1.78.
     #[must_use]
     pub fn three_layer() -> Self {
         let layer = |waves: f64, index: f64| StackLayer::constant(waves * THREE_NM / index, index, 0.0);
@@ -104,8 +105,8 @@ impl Coating {
         Self::Stack(Arc::new(Stack::new(layers)))
     }
 
-    /// Returns the usual coating of lenses of a year: none before 1940, one layer before 1970, then three. Without a year the glass is
-    /// bare, because nothing is taken for granted.
+    /// Returns the usual coating of lenses of a year: none before 1940, one layer before 1970, then three. If the year is unknown
+    /// the glass is bare, because no coating is taken for granted.
     #[must_use]
     pub fn of_year(year: Option<i32>) -> Self {
         match year {

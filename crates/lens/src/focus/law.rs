@@ -1,6 +1,6 @@
 //! Focusing laws: how groups of surfaces move when a lens is focused.
 
-/// The motion of one group in focusing.
+/// The focusing law of one group: how the group moves when the lens is focused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FocusLaw {
     /// Group that moves: index into [`crate::Lens::groups`].
@@ -12,17 +12,18 @@ pub struct FocusLaw {
 /// The way a group moves in focusing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GroupTravel {
-    /// The group moves this many times the common travel, toward the object if positive. The common travel follows from the object
-    /// distance.
+    /// The group moves this many times the common travel of all such groups, toward the object if positive. The common travel
+    /// follows from the object distance.
     Factor(f64),
-    /// The group moves as a table says.
+    /// The group moves as a table of object distances states.
     Table(FocusTable),
-    /// The group moves until lines across are in focus, too. These belong to the x-z section of a lens with cylinders; the y-z section is
-    /// focused by the other groups, or by the whole lens.
+    /// The group moves until the x-z section of a lens with cylinders is in focus as well. The other groups, or the whole lens,
+    /// focus the y-z section.
     SectionX,
 }
 
-/// The shift of a group as a function of the object distance: a monotone cubic in one over the distance, through every point.
+/// The shift of a group as a function of the object distance. It is a monotone cubic in one over the distance, through every
+/// point.
 ///
 /// F. N. Fritsch and J. Butland, "A method for constructing local monotone piecewise cubic interpolants", SIAM J. Sci.
 /// Stat. Comput. 5 (1984), 300.
@@ -35,8 +36,9 @@ pub struct FocusTable {
 }
 
 impl FocusTable {
-    /// Creates a table from pairs of object distance from the first vertex and shift toward the object, both in mm. Distances are
-    /// descending; infinity is allowed. Returns `None` unless there are two or more points in order.
+    /// Creates a table from pairs of an object distance from the first vertex and the shift toward the object at this distance,
+    /// both in mm. Distances are descending; infinity is allowed. Returns `None` unless there are at least two points in this
+    /// order.
     #[must_use]
     pub fn new(points: &[(f64, f64)]) -> Option<Self> {
         let vergence: Vec<f64> = points.iter().map(|(distance_mm, _)| 1.0 / distance_mm).collect();
@@ -81,7 +83,7 @@ impl FocusTable {
         (1.0 / self.vergence[self.vergence.len() - 1], 1.0 / self.vergence[0])
     }
 
-    /// Shift toward the object for an object at this distance, both in mm; `None` outside the range of the table.
+    /// Returns the shift toward the object (mm) for an object at the distance `object_mm`; `None` outside the range of the table.
     #[must_use]
     pub fn shift_mm(&self, object_mm: f64) -> Option<f64> {
         let v = 1.0 / object_mm;

@@ -61,8 +61,8 @@ pub enum FocusError {
 }
 
 impl Lens {
-    /// Returns the distance (mm) from the last vertex to the image plane with which an object is in focus if the whole lens is
-    /// moved. The object lies `object_mm` in front of the first vertex (infinity allowed).
+    /// Returns the distance (mm) from the last vertex to the image plane at which an object is in focus, if the whole lens moves.
+    /// The object lies `object_mm` in front of the first vertex (infinity allowed).
     ///
     /// # Errors
     /// [`FocusError::TooNear`] if the object lies at or inside the front focal point.
@@ -75,8 +75,9 @@ impl Lens {
         Ok(self.image_gap_mm() + self.paraxial_image_gap_mm(object_mm, self.reference_nm) - infinity)
     }
 
-    /// Focuses the lens at an object `object_mm` in front of the first vertex (infinity allowed). The lens must stand as its file has it.
-    /// Its groups move by their focusing laws (see [`FocusLaw`]); without any the whole lens moves (see [`Lens::focused_gap_mm`]).
+    /// Focuses the lens on an object `object_mm` in front of the first vertex (infinity allowed). The groups of the lens must be
+    /// in the positions that its file states. They move by their focusing laws (see [`FocusLaw`]); without laws the whole lens
+    /// moves (see [`Lens::focused_gap_mm`]).
     ///
     /// # Errors
     /// [`FocusError`] if the lens cannot be focused at this distance.

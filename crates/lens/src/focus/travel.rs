@@ -30,7 +30,8 @@ impl Lens {
         self.elements[range.end - 1].thickness_mm += toward_object_mm;
     }
 
-    /// Returns the lens with its groups moved by a common travel, mm. If no group has a factor, the whole lens moves.
+    /// Returns the lens with its groups moved by their factors times the common travel `travel_mm`. If no group has a factor, the
+    /// whole lens moves.
     ///
     /// # Errors
     /// [`FocusError::Collision`] if a group would run into its neighbor.
@@ -46,7 +47,7 @@ impl Lens {
         self.with_groups_shifted(&shifts)
     }
 
-    /// Whether any group moves in proportion to a common travel.
+    /// Returns whether a group moves in proportion to a common travel.
     pub fn has_factors(&self) -> bool {
         self.focus_laws.iter().any(|law| matches!(law.travel, GroupTravel::Factor(_)))
     }

@@ -6,7 +6,7 @@ use crate::Aperture;
 /// The kind of a layer on a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LayerKind {
-    /// A film of fine droplets or grains.
+    /// A film of fine droplets or grains that scatters light.
     Haze,
     /// Grains that stop and diffract light.
     Dust,
@@ -29,11 +29,11 @@ impl LayerKind {
 /// One layer on a surface that stops and scatters light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// Kind of the layer.
+    /// Kind of the layer: haze, dust or scratches.
     pub soil: LayerKind,
-    /// Fraction of the light that the layer stops where it lies.
+    /// Fraction of the light that the layer stops, at points where it lies.
     pub stopped: f64,
-    /// Fraction of the light that the layer scatters where it lies.
+    /// Fraction of the light that the layer scatters, at points where it lies.
     pub scattered: f64,
     /// Where the layer lies: all over the surface if empty, otherwise where all of these apertures let light pass.
     pub places: Vec<Aperture>,
@@ -48,17 +48,17 @@ impl Layer {
     }
 }
 
-/// The fractions of light that the layers of a surface leave at one point.
+/// The fractions of light that the layers of a surface let through at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shares {
-    /// Fraction that no layer stops.
+    /// Fraction of the light that no layer stops, whether or not it is scattered.
     pub open: f64,
-    /// Fraction that no layer stops or scatters.
+    /// Fraction of the light that no layer stops or scatters.
     pub straight: f64,
 }
 
 impl Shares {
-    /// Computes the fractions that these layers leave at a point of the surface, mm.
+    /// Computes the fractions at a point of the surface (mm). `semi_diameter_mm` is the semi-diameter of the surface.
     pub fn at(layers: &[Layer], [x, y]: [f64; 2], semi_diameter_mm: Option<f64>) -> Self {
         let mut all = Self { open: 1.0, straight: 1.0 };
         for layer in layers {
@@ -70,15 +70,15 @@ impl Shares {
         all
     }
 
-    /// Returns the largest fraction that these layers can scatter anywhere.
+    /// Returns the largest fraction of light that these layers can scatter at any point.
     pub fn most_scattered(layers: &[Layer]) -> f64 {
         // Of two layers that stop light, one may leave less for the other to scatter.
         1.0 - layers.iter().map(|layer| 1.0 - layer.scattered).product::<f64>()
     }
 }
 
-/// Selects the layer that scatters a ray at a point of the surface (mm) by a random number in [0, 1). Returns `None` if no layer
-/// scatters there.
+/// Selects the layer that scatters a ray at a point of the surface (mm). `number` is a random number in [0, 1). Returns `None` if
+/// no layer scatters there.
 pub fn which(layers: &[Layer], [x, y]: [f64; 2], semi_diameter_mm: Option<f64>, number: f64) -> Option<&Layer> {
     let part = |layer: &Layer| layer.scattered * layer.there(x, y, semi_diameter_mm);
     let mut left = number * layers.iter().map(part).sum::<f64>();

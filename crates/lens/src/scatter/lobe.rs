@@ -15,13 +15,13 @@ pub enum Lobe {
     /// Harvey and Shack's three-parameter function: proportional to (1 + (step / shoulder)^2)^(slope / 2), for steps up to 1.
     /// A slope of -3 is the Henyey-Greenstein function (Astrophys. J. 93, 70 (1941)) with shoulder = (1 - g) / sqrt(g).
     Harvey {
-        /// Step at which the function begins to fall.
+        /// Step at which the function begins to fall steeply.
         shoulder: f64,
-        /// Exponent of the function far out, negative.
+        /// Exponent of the function at large steps, negative.
         slope: f64,
     },
-    /// Diffraction by opaque disks: by Babinet's principle the pattern of round openings (G. B. Airy, Trans. Cambridge Phil. Soc. 5,
-    /// 283 (1835)).
+    /// Diffraction by opaque disks. By Babinet's principle it is the pattern of round openings (G. B. Airy, Trans. Cambridge
+    /// Phil. Soc. 5, 283 (1835)).
     Disks {
         /// Median of the diameters, weighted by area, nm.
         diameter_nm: f64,
@@ -30,7 +30,7 @@ pub enum Lobe {
         /// Diffraction pattern of one disk.
         pattern: Pattern,
     },
-    /// Diffraction by opaque lines: the pattern of slits, across each line.
+    /// Diffraction by opaque lines: the pattern of slits, in the direction across each line.
     Lines {
         /// Width of the lines, nm.
         width_nm: f64,
@@ -65,7 +65,8 @@ impl Lobe {
         Self::Lines { width_nm, run, pattern: Pattern::slit() }
     }
 
-    /// Draws a step along x and y of the surface, at a point of the surface (mm), from four random numbers in [0, 1).
+    /// Draws a step of the direction cosines along x and y of the surface, multiplied by the index. The four numbers in [0, 1)
+    /// are random, and the last argument is the point of the surface (mm).
     #[must_use]
     pub fn step(&self, [u, v]: [f64; 2], [a, b]: [f64; 2], wavelength_nm: f64, [x, y]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = sin_cos_turns(v);
@@ -107,7 +108,7 @@ fn harvey_step(shoulder: f64, slope: f64, u: f64) -> f64 {
     shoulder * (grown - 1.0).max(0.0).sqrt()
 }
 
-/// A cumulative diffraction pattern: the fraction of light within a distance x. The unit is x = pi times size times step over wavelength.
+/// A cumulative diffraction pattern: the fraction of light at scaled steps below x = pi times size times step over wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     /// Fractions at 0, [`CELL`], 2 [`CELL`] ... [`END`], with linear interpolation between them.
@@ -148,7 +149,7 @@ impl Pattern {
         Self { within: within.into(), tail: 1.0 / PI }
     }
 
-    /// Returns the fraction of light within the distance `x`.
+    /// Returns the fraction of light at scaled steps below `x`.
     #[must_use]
     pub fn within(&self, x: f64) -> f64 {
         if x >= END {
@@ -159,7 +160,7 @@ impl Pattern {
         self.within[cell] + (at - cell as f64) * (self.within[cell + 1] - self.within[cell])
     }
 
-    /// Returns the distance within which a fraction `part` of the light lies.
+    /// Returns the scaled step below which the fraction `part` of the light lies.
     #[must_use]
     pub fn quantile(&self, part: f64) -> f64 {
         if part >= self.within[CELLS] {

@@ -22,20 +22,21 @@ use crate::{Element, Lens};
 use spectra_core::surface::Action;
 
 impl Lens {
-    /// Whether haze, dust or scratches on any surface of the lens scatter light.
+    /// Returns whether haze, dust or scratches on any surface of the lens scatter light.
     #[must_use]
     pub fn scatters(&self) -> bool {
         self.elements.iter().flat_map(|e| &e.layers).any(|layer| layer.scattered > 0.0)
     }
 
-    /// Whether the lens scatters light, and only by haze, whose light has no rings or streaks.
+    /// Returns whether the lens scatters light only by haze, whose light has no rings or streaks.
     #[must_use]
     pub fn scatters_smoothly(&self) -> bool {
         let is_smooth = |layer: &Layer| layer.scattered <= 0.0 || matches!(layer.lobe, Lobe::Harvey { .. });
         self.scatters() && self.elements.iter().flat_map(|e| &e.layers).all(is_smooth)
     }
 
-    /// Puts this layer on all outer surfaces, where glass or a mirror meets a gas, and removes other layers of its kind everywhere.
+    /// Puts this layer on all outer surfaces, where glass or a mirror meets a gas. Other layers of the same kind are removed from
+    /// all surfaces.
     #[must_use]
     pub fn with_layer(mut self, layer: &Layer) -> Self {
         for at in 0..self.elements.len() {

@@ -149,7 +149,7 @@ fn scratches(node: &StageNode, resources: &dyn Resources) -> Result<Layer, Fault
     })
 }
 
-/// Reads the layers of haze, dust and scratches that are given, in this order. Faults are added to `faults`.
+/// Reads the layers of haze, dust and scratches from those nodes that are given, in this order. Faults are added to `faults`.
 pub fn read_layers(
     [haze_form, dust_form, scratches_form]: [Option<&StageNode>; 3],
     resources: &dyn Resources,

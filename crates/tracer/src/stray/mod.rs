@@ -23,20 +23,20 @@ pub use room::{Interior, StrayError};
 pub use walk::{Particle, StrayLedger, Walker};
 pub use walk_numbers::WalkNumbers;
 
-/// The reflectances inside a lens and camera, other than those of glass: fractions from 0 to 1.
+/// Reflectances inside a lens and camera, except those of glass: fractions from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrayReflectances {
     /// Diffuse reflectance of the paint on barrel, rims, edges of glass and blades, and in the camera around the imager.
     pub paint: f64,
     /// Diffuse reflectance of the imager.
     pub imager: f64,
-    /// Mirror-like reflectance of the imager; the sum with `imager` is at most 1.
+    /// Mirror-like reflectance of the imager. The sum of `imager` and `imager_mirror` is at most 1.
     pub imager_mirror: f64,
 }
 
-/// Diffuse reflectance of matte black paint, used unless something else is stated. Flat black paints for optical instruments reflect
-/// about 4 to 5 % of visible light (J. L. Marshall et al., "Characterization of the reflectivity of various black materials", Proc. SPIE
-/// 9147, 91474F, 2014).
+/// Diffuse reflectance of matte black paint, used unless another value is stated. Flat black paints for optical instruments
+/// reflect about 4 to 5 % of visible light (J. L. Marshall et al., "Characterization of the reflectivity of various black
+/// materials", Proc. SPIE 9147, 91474F, 2014).
 pub const BLACK_PAINT: f64 = 0.04;
 
 impl Default for StrayReflectances {

@@ -32,13 +32,14 @@ const PUPIL_MARGIN: f64 = 1.15;
 /// Step of the tables of indices, nm.
 const STEP_NM: f64 = 1.0;
 
-/// The reason why the stray light of a lens is not computed.
+/// The reason why the stray light of a lens cannot be computed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StrayError {
     /// No surface states a semi-diameter.
     #[error("no surface of the lens states a semi-diameter, so it has no barrel")]
     NoSizes,
-    /// A mirror, a prism, a grating, a surface that scatters, or a tilted surface: its number, from 1, and what it is.
+    /// A surface that cannot be treated: its number, from 1, and what it is (a mirror, a prism, a grating, a surface that
+    /// scatters, or a tilted surface).
     #[error("stray light is computed only for lenses on a straight axis whose surfaces refract; surface {0} is {1}")]
     NotStraight(usize, &'static str),
     /// The lens has no surfaces.
@@ -266,8 +267,8 @@ pub struct Interior {
 }
 
 impl Interior {
-    /// Creates the interior of a lens as it is set, in front of an imager of this width and height (mm), for light of a band
-    /// (nm).
+    /// Creates the interior of a lens as it is set, in front of an imager with the width and height `frame_mm`, for light of the
+    /// band `band_nm` (nm). `matter` holds the reflectances inside.
     ///
     /// # Errors
     /// [`StrayError`] if the lens has no surfaces or sizes, or its rooms do not lie on a straight axis.
@@ -333,7 +334,7 @@ impl Interior {
         })
     }
 
-    /// Moves the center of the imager off the axis, mm. The camera behind the lens is widened for it.
+    /// Moves the center of the imager off the axis, to `center_mm`. The camera behind the lens is widened for it.
     #[must_use]
     pub fn with_imager_at(mut self, center_mm: [f64; 2]) -> Self {
         self.center_mm = center_mm;
@@ -343,7 +344,7 @@ impl Interior {
         self
     }
 
-    /// Position and radius of the first rim, mm: all light that enters crosses the surface within it.
+    /// Position along the axis and radius of the first rim, mm. All light that enters passes through this rim.
     #[must_use]
     pub fn front_rim_mm(&self) -> (f64, f64) {
         (self.front.z_mm, self.front.radius_mm)

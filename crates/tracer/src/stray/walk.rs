@@ -10,38 +10,38 @@ use spectra_lens::scatter::{Shares, which};
 /// Largest number of walls that a particle meets; the light left then is recorded as not traced.
 const MOST_WALLS: usize = 4096;
 
-/// A particle of light, in the frame of the lens.
+/// A particle of light on a random walk, in the frame of the lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Particle {
     /// Position of the particle, mm.
     pub position: DVec3,
-    /// Unit vector of its direction.
+    /// Unit direction in which the particle travels.
     pub direction: DVec3,
     /// Amount of light that the particle represents.
     pub weight: f64,
     /// Number of times that glass surfaces, or the imager as a mirror, have reflected the particle.
     pub mirrored: u32,
-    /// Number of times that paint, or the imager as a screen, has scattered the particle.
+    /// Number of times that paint, or the imager as a diffuse screen, has scattered the particle.
     pub scattered: u32,
     /// Number of times that haze, dust or scratches on surfaces have scattered the particle.
     pub diffused: u32,
 }
 
 impl Particle {
-    /// Whether nothing reflected the particle back: it came straight, apart from scattering by layers on surfaces.
+    /// Returns whether the particle came straight: no wall reflected it, though layers on surfaces may have scattered it.
     #[must_use]
     pub fn is_straight(&self) -> bool {
         self.mirrored == 0 && self.scattered == 0
     }
 }
 
-/// The account of where the light of walks ended, in the unit of their weights: `launched + aimed` is the sum of the others, up to
-/// rounding.
+/// The account of where the light of walks ended, in the unit of the particles' weights: `launched + aimed` equals the sum of the
+/// other entries, up to rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StrayLedger {
     /// Light that the walks started with.
     pub launched: f64,
-    /// Light added by aiming scattered light at useful targets with compensating weights: zero apart from noise.
+    /// Light added by aiming scattered light at useful targets. The compensating weights make it zero apart from noise.
     pub aimed: f64,
     /// Light that left through the front.
     pub front: f64,
@@ -53,18 +53,18 @@ pub struct StrayLedger {
     pub coatings: f64,
     /// Light absorbed by the imager.
     pub imager: f64,
-    /// Light not followed to its end.
+    /// Light of walks that were not followed to their end.
     pub not_traced: f64,
 }
 
 impl StrayLedger {
-    /// Returns the sum of all light that ended.
+    /// Returns the sum of all light that ended somewhere.
     #[must_use]
     pub fn ended(&self) -> f64 {
         self.front + self.paint + self.glass + self.coatings + self.imager + self.not_traced
     }
 
-    /// Adds the entries of another ledger.
+    /// Adds the entries of `other` to this ledger.
     pub fn add(&mut self, other: &Self) {
         self.launched += other.launched;
         self.aimed += other.aimed;
@@ -89,7 +89,7 @@ pub struct Walker<'a> {
 }
 
 impl<'a> Walker<'a> {
-    /// Creates a walker inside a lens. Set a wavelength before the first walk.
+    /// Creates a walker inside a lens. Set a wavelength by [`Walker::set_wavelength`] before the first walk.
     #[must_use]
     pub fn new(interior: &'a Interior) -> Self {
         let rooms = vec![[1.0, 0.0]; interior.skins.len() + 1];
@@ -107,8 +107,9 @@ impl<'a> Walker<'a> {
     }
 
     /// Traces one random walk backward, from a point of the imager (mm, in its plane) to the front of the lens. Returns the
-    /// particle that leaves through the front, or `None` if it does not. Averaged over walks (`None` counts as 0), its weight is
-    /// E / (pi L): the irradiance E at the point in a field of uniform radiance L. At the start the mean weight is 1.
+    /// particle that leaves through the front, or `None` if it does not leave there. Its mean weight over walks (`None` counts as
+    /// 0) is E / (pi L), where E is the irradiance at the point in a field of uniform radiance L. At the start the mean weight is
+    /// 1.
     pub fn from_imager(&mut self, [x, y]: [f64; 2], chance: &mut WalkNumbers) -> Option<Particle> {
         let position = DVec3::new(x, y, self.interior.imager_z_mm());
         let (direction, weight) = self.off_imager(position, chance);
@@ -117,8 +118,8 @@ impl<'a> Walker<'a> {
         self.walk(start, self.interior.skins.len(), true, chance, &mut |_| {})
     }
 
-    /// Starts a particle at the front, with the light, and calls `arrives` each time that it reaches the imager: the first time and, if
-    /// the imager reflects, again. Returns the particle that leaves through the front, if it does.
+    /// Traces one random walk forward, from `particle` at the front. `arrives` is called each time that the particle reaches the
+    /// imager, which may happen again if the imager reflects. Returns the particle if it leaves through the front.
     pub fn from_front(
         &mut self,
         particle: Particle,

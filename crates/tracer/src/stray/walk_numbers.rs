@@ -7,7 +7,7 @@ use spectra_core::numbers::{GOLDEN, SplitMix64, mix64};
 pub struct WalkNumbers(SplitMix64);
 
 impl WalkNumbers {
-    /// Creates the stream of a walk.
+    /// Creates the stream of random numbers for walk number `walk`.
     #[must_use]
     pub fn new(seed: u64, walk: u64) -> Self {
         Self(SplitMix64::new(mix64(

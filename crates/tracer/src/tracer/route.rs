@@ -47,7 +47,8 @@ pub(super) fn arrives(element: &Element) -> f64 {
     if element.along != element.reversed { 1.0 } else { -1.0 }
 }
 
-/// A path made ready to trace: the pose of each surface as seen from the one before, what it does, and the media on its sides.
+/// A path that is prepared for tracing: the pose of each surface in the frame of the one before, its action, and the media on
+/// both sides.
 #[derive(Clone, Debug)]
 pub struct Route {
     /// The side from which light enters.
@@ -62,7 +63,7 @@ pub struct Route {
 }
 
 impl Route {
-    /// Returns the number of elements that light meets.
+    /// Returns the number of steps: the elements that light meets, in order.
     #[must_use]
     pub fn steps(&self) -> usize {
         self.legs.len()

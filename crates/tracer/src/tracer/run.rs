@@ -17,19 +17,20 @@ use spectra_lens::scatter::Shares;
 type Observer<'a> = &'a mut dyn FnMut(usize, &RayBatch);
 
 impl Tracer {
-    /// Traces a batch straight through the lens. Forward, it enters in the frame of the lens and leaves in that of the image plane; backward
-    /// it is the other way round.
+    /// Traces a batch straight through the lens. Forward, it enters in the frame of the lens and leaves in the frame of the image
+    /// plane; backward it is the other way round.
     pub fn trace(&self, rays: &mut RayBatch, work: &mut Work, travel: Travel) {
         self.follow(if travel == Travel::Forward { &self.forward } else { &self.backward }, rays, work);
     }
 
-    /// Traces a batch along a path. At the front rays enter and leave in the frame of the lens, at the rear in that of the image plane.
+    /// Traces a batch along a route. At the front, rays enter and leave in the frame of the lens; at the rear, in the frame of
+    /// the image plane.
     pub fn follow(&self, route: &Route, rays: &mut RayBatch, work: &mut Work) {
         self.run(route, rays, work, None);
     }
 
-    /// Traces a batch along a path and shows it behind each element: `seen` gets the element's number, and the rays where they met it, in the
-    /// frame of its [`Element::pose`](spectra_lens::Element::pose).
+    /// Traces a batch along a route and calls `seen` behind each element. `seen` gets the element's index, and the rays at the
+    /// points where they met it, in the frame of its [`Element::pose`](spectra_lens::Element::pose).
     pub fn follow_each(
         &self,
         route: &Route,

@@ -8,13 +8,13 @@ use spectra_core::{Loss, RayBatch};
 /// The path of a single ray, surface by surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RayPath {
-    /// The start of the ray, then its point on each surface that it met, in mm, in the frame of the lens.
+    /// Points of the path (mm, frame of the lens): the start of the ray, then its point on each surface that it met.
     pub points: Vec<DVec3>,
-    /// Index of the element of each point except the start.
+    /// Index of the element at each point except the start.
     pub elements: Vec<usize>,
-    /// Direction behind the last surface that it passed.
+    /// Direction behind the last surface that the ray passed.
     pub direction: DVec3,
-    /// Cause and surface (from 1) of its end; `None` if it left the lens.
+    /// Cause and surface (from 1) at which the ray ended; `None` if it left the lens.
     pub end: Option<(Loss, u32)>,
 }
 
@@ -27,7 +27,7 @@ impl Tracer {
         self.path_along(&self.forward, position, direction, wavelength_nm)
     }
 
-    /// Follows a single ray along a route that enters at the front. See [`Tracer::path`].
+    /// Follows a single ray along a route that enters at the front, like [`Tracer::path`].
     #[must_use]
     pub fn path_along(&self, route: &Route, position: DVec3, direction: DVec3, wavelength_nm: f64) -> RayPath {
         let mut rays = RayBatch::new(1).on(Isa::Baseline);

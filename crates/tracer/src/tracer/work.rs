@@ -14,7 +14,7 @@ use spectra_glass::Dispersion;
 #[derive(Debug, Default)]
 pub struct Work {
     pub(super) media: Vec<IndexColumnPair>,
-    /// Rays lost so far, by cause and surface.
+    /// Counts of the rays lost so far, by cause and surface.
     pub losses: LossCounts,
     pub(super) compact: bool,
     pub(super) capacity: usize,
@@ -25,7 +25,7 @@ pub struct Work {
 }
 
 impl Work {
-    /// Keeps a ledger of where the light of a path goes. A ledger serves one path: see [`Work::take_ledger`].
+    /// Keeps a ledger of where the light of a path goes. Each ledger serves one path; see [`Work::take_ledger`].
     #[must_use]
     pub fn with_ledger(mut self) -> Self {
         self.ledger = Some((Ledger::default(), Booked::new(self.capacity)));
@@ -39,14 +39,15 @@ impl Work {
         }
     }
 
-    /// Returns the ledger so far and starts a new one; `None` if no ledger is kept.
+    /// Returns the ledger kept so far and starts a new one; `None` if no ledger is kept.
     pub fn take_ledger(&mut self) -> Option<Ledger> {
         self.ledger.as_mut().map(|(ledger, _)| std::mem::take(ledger))
     }
 }
 
 impl Tracer {
-    /// Returns scratch space for batches of up to `capacity` rays. Once more than half of a batch has ended, the ended rays are dropped.
+    /// Returns scratch space for batches of up to `capacity` rays. Tracing removes ended rays from a batch once they are more
+    /// than half of it.
     #[must_use]
     pub fn work(&self, capacity: usize) -> Work {
         let media = self.media.iter().map(|medium| IndexColumnPair::new(medium, capacity)).collect();
@@ -54,13 +55,14 @@ impl Tracer {
         Work { media, losses: LossCounts::default(), compact: true, capacity, before, ledger: None }
     }
 
-    /// Returns scratch space with which every ray keeps its place in the batch.
+    /// Returns scratch space with which tracing never removes rays, so every ray keeps its place in the batch.
     #[must_use]
     pub fn work_in_place(&self, capacity: usize) -> Work {
         Work { compact: false, ..self.work(capacity) }
     }
 
-    /// Returns scratch space for rendering: clear coatings of thin layers are computed in single precision, within 1e-6.
+    /// Returns scratch space for rendering, with which clear coatings of thin layers are computed in single precision, within
+    /// 1e-6.
     #[must_use]
     pub fn work_for_light(&self, capacity: usize) -> Work {
         let work = self.work(capacity);
