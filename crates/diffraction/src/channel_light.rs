@@ -10,8 +10,8 @@ pub struct ChannelLight {
 const WAVELENGTHS: usize = 8;
 
 impl ChannelLight {
-    /// Reduces pairs of wavelength (nm) and light seen by the channel to parts of equal light, each at its mean wavelength. `None` if the
-    /// channel sees no light.
+    /// Reduces the light that a channel sees to a few parts of equal light, each at its mean wavelength. `seen` holds pairs of a
+    /// wavelength (nm) and the light seen there. `None` if the channel sees no light.
     #[must_use]
     pub fn of(seen: &[[f64; 2]]) -> Option<Self> {
         let mut sorted: Vec<[f64; 2]> = seen.iter().copied().filter(|[_, light]| *light > 0.0).collect();

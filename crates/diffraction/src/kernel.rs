@@ -18,7 +18,7 @@ const SAMPLES: f64 = 3.0;
 /// Reach of the window that keeps fine patterns sharp, in pixels.
 const WINDOW: f64 = 6.0;
 
-/// The weights of the pixels around one, point-symmetric about it.
+/// The weights with which a pixel's light is spread over the pixels around it, point-symmetric about it.
 #[derive(Clone, Debug)]
 pub struct PixelSpread {
     radius: usize,
@@ -26,8 +26,9 @@ pub struct PixelSpread {
 }
 
 impl PixelSpread {
-    /// Computes the spread of a channel's light by an opening. Pixels have the size `pitch_mm` (mm). The weights reach out to `radius`
-    /// pixels, where they fade out. `elsewhere` is the fraction of the light that goes beyond. The weights and `elsewhere` sum to 1.
+    /// Computes the spread of a channel's light by an opening (in direction cosines). `pitch_mm` is the size of a pixel, mm. The
+    /// weights reach out to `radius` pixels, where they fade out. `elsewhere` is the fraction of the light that goes farther. The
+    /// weights and `elsewhere` sum to 1.
     #[must_use]
     pub fn new(opening: &Polygon, light: &ChannelLight, pitch_mm: [f64; 2], radius: usize, elsewhere: f64) -> Self {
         let wings = Wings::new(opening);
@@ -65,15 +66,15 @@ impl PixelSpread {
         self.radius
     }
 
-    /// Returns the weight of the pixel `i` to the right and `j` down.
+    /// Returns the weight of the pixel `i` to the right and `j` down from the center.
     #[must_use]
     pub fn weight(&self, i: isize, j: isize) -> f64 {
         let r = self.radius as isize;
         self.weights[((j + r) * (2 * r + 1) + i + r) as usize]
     }
 
-    /// Corrects the weights for the aberrations of `wave`: traced rays with these aberrations, spread by the corrected weights,
-    /// have the contrast that the aberrated wavefront gives. Pixels have the size `pitch_mm` (mm).
+    /// Corrects the weights for the aberrations of `wave`. Traced rays with these aberrations, spread by the corrected weights,
+    /// have the contrast of the aberrated wavefront. `pitch_mm` is the size of a pixel, mm.
     ///
     /// Leaves the weights unchanged if the correction is negligible, or if the aberrations are so large that rays alone describe
     /// the light.

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 /// A flat opening bounded by straight edges, holes included.
 ///
-/// Its coordinates may have any unit. For a lens they are direction cosines, which have none.
+/// Coordinates may have any unit. For a lens they are direction cosines, which have no unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
     /// Closed rings, with corners in order, relative to the centroid. The opening lies to the left of each edge.
@@ -15,8 +15,8 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    /// Creates an opening from closed rings of corners. The opening lies to the left of their edges, so outer rings run counterclockwise
-    /// and holes clockwise. `None` if they enclose no area.
+    /// Creates an opening from closed rings of corners. The opening lies to the left of the edges, so outer rings run
+    /// counterclockwise and holes clockwise. `None` if the rings enclose no area.
     #[must_use]
     pub fn new(rings: Vec<Vec<[f64; 2]>>) -> Option<Self> {
         let edges = |ring: &[[f64; 2]], sum: &mut dyn FnMut([f64; 2], [f64; 2])| {
@@ -55,25 +55,25 @@ impl Polygon {
         Self::new(vec![(0..corners).map(corner).collect()]).expect("a polygon of some size")
     }
 
-    /// The rings of the opening, relative to [`Polygon::center`].
+    /// Rings of the opening: corners relative to [`Polygon::center`].
     #[must_use]
     pub fn rings(&self) -> &[Vec<[f64; 2]>] {
         &self.rings
     }
 
-    /// The centroid of the opening.
+    /// Centroid of the opening, in the coordinates given to [`Polygon::new`].
     #[must_use]
     pub fn center(&self) -> [f64; 2] {
         self.center
     }
 
-    /// The area of the opening.
+    /// Area of the opening, in squared units of the coordinates.
     #[must_use]
     pub fn area(&self) -> f64 {
         self.area
     }
 
-    /// The largest distance of a corner from the centroid.
+    /// Largest distance of a corner from the centroid.
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.rings.iter().flatten().map(|[x, y]| (x * x + y * y).sqrt()).fold(0.0, f64::max)
@@ -109,8 +109,8 @@ impl Polygon {
         crossed.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect()
     }
 
-    /// Returns the mean of exp(i k r) over the opening, with r measured from its centroid: real and imaginary part, 1 at the origin. `k` is
-    /// in radians per unit of the coordinates.
+    /// Returns the Fourier transform of the opening: the mean of exp(i k r) over it, with r measured from its centroid. The
+    /// result is the real and the imaginary part, and 1 at k = 0. `k` is in radians per unit of the coordinates.
     ///
     /// By Gauss's theorem it is a sum over edges of (k x d) sinc(k d / 2) exp(i k m) / (i k^2), with d along an edge and m its middle
     /// (S.-W. Lee and R. Mittra, "Fourier transform of a polygonal shape function", IEEE Trans. Antennas Propag. 31, 1983). The vectors d
@@ -149,8 +149,8 @@ impl Polygon {
         re * re + im * im
     }
 
-    /// Returns [`Polygon::intensity`] on a lattice of `step` radians per unit. There are `count` + 1 rows, from the origin on, each with
-    /// `count` columns on both sides of the origin.
+    /// Returns [`Polygon::intensity`] on a lattice of `step` radians per unit, row by row. There are `count` + 1 rows, from the
+    /// origin on. Each has `count` columns on both sides of the origin and one through it.
     ///
     /// Far from the origin and from an edge's normal, the term of the edge is the difference of the phases at its ends. Each phase is the
     /// product of one factor for the column and one for the row.
@@ -213,7 +213,7 @@ impl Polygon {
         (0..count + 1).flat_map(|j| (0..columns).map(move |i| (i, j))).map(|(i, j)| value(i, j)).collect()
     }
 
-    /// Returns the opening without corners that lie closer than `tolerance` to the line between the neighbors that are kept.
+    /// Returns the opening without those corners that lie closer than `tolerance` to the line between the remaining neighbors.
     #[must_use]
     pub fn simplified(&self, tolerance: f64) -> Self {
         let mut rings = Vec::new();
@@ -260,7 +260,8 @@ impl Polygon {
         self.left_of(&lines)
     }
 
-    /// Returns the part of the opening to the left of each of these lines, each given by two points. `None` if nothing remains.
+    /// Returns the part of the opening that lies to the left of each of these lines, given by two points each. `None` if no part
+    /// remains.
     #[must_use]
     pub fn left_of(&self, lines: &[[[f64; 2]; 2]]) -> Option<Self> {
         let mut rings: Vec<Vec<[f64; 2]>> = self.rings.clone();

@@ -36,7 +36,7 @@ const DEGREE: usize = 5;
 /// Closed rings of corners, mm.
 type Rings = Vec<Vec<[f64; 2]>>;
 
-/// The opening of a lens, to be seen from the film.
+/// The opening of a lens, for computing how it looks from points of the film.
 pub struct Pupil<'o> {
     optics: &'o Optics,
     /// Index of the element that shapes the light.
@@ -61,7 +61,7 @@ impl<'o> Pupil<'o> {
     /// Prepares the opening of a lens in its current setting.
     ///
     /// # Errors
-    /// Explains why the diffraction at the stop cannot be computed.
+    /// The diffraction at the stop cannot be computed; the fault says why.
     pub fn new(optics: &'o Optics) -> Result<Self, Fault> {
         let smallest = || {
             let sized =
@@ -82,8 +82,8 @@ impl<'o> Pupil<'o> {
         Ok(Self { optics, stop, rings, reach_mm })
     }
 
-    /// Returns the opening as seen from a point of the film, in direction cosines along two unit vectors. Point (mm) and vectors are in the
-    /// frame of the image plane. `None` if the point sees no opening.
+    /// Returns the opening as seen from a point of the film, in direction cosines along the two unit vectors `axes`. The point
+    /// (mm) and the vectors are in the frame of the image plane. `None` if no opening is visible from the point.
     #[must_use]
     pub fn seen_from(&self, point: DVec3, axes: [DVec3; 2]) -> Option<Polygon> {
         let rays = self.rays_from(point, axes)?;
@@ -191,14 +191,15 @@ pub struct Wavefronts<'a> {
 }
 
 impl<'a> Wavefronts<'a> {
-    /// Prepares a lens at a wavelength, nm; `None` if a glass is not defined there.
+    /// Prepares a lens at the wavelength `nm`; `None` if the index of a glass is not defined there.
     #[must_use]
     pub fn new(optics: &'a Optics, nm: f64) -> Option<Self> {
         Some(Self { optics, tracer: optics.tracer_clipping(Indices::At(nm), Clipping::None).ok()?, nm })
     }
 
-    /// Returns the wavefront of the light that reaches a point of the film through an opening, given in direction cosines along two unit
-    /// vectors. Point (mm) and vectors are in the frame of the image plane. `None` if too few rays come through.
+    /// Returns the wavefront of the light that reaches a point of the film through `opening`, which is in direction cosines along
+    /// the two unit vectors `axes`. The point (mm) and the vectors are in the frame of the image plane. `None` if too few rays
+    /// pass.
     #[must_use]
     pub fn seen_from(&self, point: DVec3, axes: [DVec3; 2], opening: &Polygon) -> Option<Wavefront> {
         let normal = axes[0].cross(axes[1]);

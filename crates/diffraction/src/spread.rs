@@ -31,12 +31,13 @@ const OF_BRIGHTEST: f64 = 1e-4;
 /// Largest number of pixels of a channel whose spikes are drawn.
 const MOST: usize = 6000;
 
-/// The lens as seen from places of a frame: at a column and row, in pixels from the upper left corner of the picture.
+/// View of the lens from places of a frame. A place is a column and a row, in pixels from the upper left corner of the picture.
 pub trait LensView: Sync {
-    /// Returns the opening seen from a place, in direction cosines; `None` if none is seen.
+    /// Returns the opening as seen from a place, in direction cosines; `None` if no opening is visible there.
     fn opening(&self, at: [f64; 2]) -> Option<Polygon>;
 
-    /// Returns the wavefront over that opening; `None` for a perfect lens, or if the wavefront is not known.
+    /// Returns the wavefront over `opening`, the opening seen from the place `at`. `None` for a perfect lens, or if the wavefront
+    /// is not known.
     fn wave(&self, at: [f64; 2], opening: &Polygon) -> Option<Wavefront>;
 }
 
@@ -51,10 +52,10 @@ impl<F: Fn([f64; 2]) -> Option<Polygon> + Sync> LensView for F {
     }
 }
 
-/// What diffraction did to one channel.
+/// Summary of what diffraction did to one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpreadReport {
-    /// Fraction of the channel's light that diffraction moves outside the frame.
+    /// Fraction of the channel's light that diffraction sends outside the frame.
     pub left: f64,
     /// Fraction of the light of a pixel in the middle of the frame that stays in that pixel.
     pub stays: f64,
@@ -62,8 +63,8 @@ pub struct SpreadReport {
     pub stars: usize,
 }
 
-/// Returns the largest fraction of a pixel's light that its star brings to another pixel, where the star leaves the pixels around its
-/// light. `None` if the middle of the frame sees no opening.
+/// Returns the largest fraction of a pixel's light that its star (its diffraction spikes) sends to a single pixel beyond the core
+/// of the pattern. `None` if no opening is visible from the middle of the frame.
 #[must_use]
 pub fn star_of_pixel(size: FrameSize, light: &ChannelLight, seen: &dyn LensView) -> Option<f64> {
     let pitch_mm = [size.width_mm / f64::from(size.width_px), size.height_mm / f64::from(size.height_px)];
@@ -115,7 +116,7 @@ fn median(plane: &[f32]) -> f32 {
     *median
 }
 
-/// A frame prepared for spreading: the kernels of one channel's light.
+/// The kernels that spread one channel of a frame by diffraction.
 pub struct Spread<'a> {
     size: FrameSize,
     pitch_mm: [f64; 2],
@@ -144,7 +145,7 @@ fn lighten(light: &mut [f64]) {
 }
 
 impl<'a> Spread<'a> {
-    /// Prepares spreading for a channel's light on a frame. `None` if the middle of the frame sees no opening.
+    /// Prepares the spreading of a channel's light on a frame. `None` if no opening is visible from the middle of the frame.
     #[must_use]
     pub fn new(size: FrameSize, light: ChannelLight, seen: &'a dyn LensView) -> Option<Self> {
         let (width, height) = (size.width_px as usize, size.height_px as usize);
@@ -251,7 +252,7 @@ impl<'a> Spread<'a> {
         lower[line..].iter().rev().chain(&lower).copied().collect()
     }
 
-    /// Spreads a plane of exposures by diffraction, in place.
+    /// Spreads a plane of exposures, one value per pixel, by diffraction, in place.
     ///
     /// # Panics
     /// Panics if the plane does not have the size of the frame.

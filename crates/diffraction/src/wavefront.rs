@@ -9,9 +9,9 @@ use spectra_numerics::linear::least_squares;
 const DEGREE: usize = 8;
 const TERMS: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 
-/// The wavefront at a point of the film: the optical path (mm) relative to that of a perfect lens, as a function of the direction
-/// cosines in which the point sees the opening. Its slope is the landing point of the ray from there, mm from the point (M. Born
-/// and E. Wolf, "Principles of optics", 5.1).
+/// The wavefront at a point of the film: the optical path (mm) relative to that of a perfect lens. It is a function of the
+/// direction cosines in which the point sees the opening. Its slope is the landing position of the ray from there, mm from the
+/// point (M. Born and E. Wolf, "Principles of optics", 5.1).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wavefront {
     center: [f64; 2],
@@ -20,7 +20,8 @@ pub struct Wavefront {
 }
 
 impl Wavefront {
-    /// Fits a wavefront to optical paths (mm) at direction cosines. `None` if there are too few of these or they lie on a line.
+    /// Fits a wavefront to optical paths (mm), each at a pair of direction cosines. `None` if there are too few pairs, or if they
+    /// lie on a line.
     #[must_use]
     pub fn fitted(cosines: &[[f64; 2]], paths_mm: &[f64]) -> Option<Self> {
         let count = cosines.len() as f64;
@@ -36,7 +37,7 @@ impl Wavefront {
         Some(own)
     }
 
-    /// Returns the optical path and its slope along both cosines, all in mm.
+    /// Returns the optical path and its slopes along both cosines, all in mm.
     #[must_use]
     pub fn at(&self, cosines: [f64; 2]) -> (f64, [f64; 2]) {
         let (values, slopes) = self.powers(cosines);

@@ -16,21 +16,21 @@ const SPIKE_RAD: f64 = 0.03;
 /// Angle of the widest fan, rad: a line that bends by more is divided.
 const WIDEST_RAD: f64 = 0.12;
 
-/// The light that a line of edges sends to both its sides.
+/// The light that a line of edges diffracts to both its sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fan {
-    /// Unit vector pointing out of the opening, in the middle of the fan.
+    /// Unit vector in the middle of the fan, pointing out of the opening.
     pub normal: [f64; 2],
     /// Angle of the fan, rad; 0 for a straight edge.
     pub spread_rad: f64,
-    /// Length of the edge that the fan comes from.
+    /// Length of the edge from which the fan comes, in direction cosines.
     pub length: f64,
-    /// Length of the whole line of which the edge is a piece.
+    /// Length of the whole line to which the edge belongs, in direction cosines.
     pub line: f64,
 }
 
 impl Fan {
-    /// Whether the fan is a spike: it comes from a whole line that hardly bends.
+    /// Returns whether the fan is a spike, which comes from a whole line that hardly bends.
     #[must_use]
     pub fn is_spike(&self) -> bool {
         self.length == self.line && self.spread_rad <= SPIKE_RAD
@@ -60,27 +60,29 @@ impl Wings {
         Self { fans, corners, area: opening.area(), around }
     }
 
-    /// The fans of all lines of edges.
+    /// Fans of all edges, each with its line.
     #[must_use]
     pub fn fans(&self) -> &[Fan] {
         &self.fans
     }
 
-    /// Returns the fraction of the light of a wavelength (mm) that falls farther than `r_mm` from the middle. It is what the edges send
-    /// there: wavelength times circumference over 2 pi^2 times area times r.
+    /// Returns the fraction of the light of a wavelength (mm) that falls farther than `r_mm` from the middle of the pattern. It
+    /// is the light from the edges: wavelength times circumference over 2 pi^2 times area times r.
     #[must_use]
     pub fn fraction_beyond(&self, r_mm: f64, wavelength_mm: f64) -> f64 {
         wavelength_mm * self.around / (2.0 * PI * PI * self.area * r_mm)
     }
 
-    /// Returns the fraction of the light of a wavelength (mm) that one fan sends beyond `r_mm`, both sides together.
+    /// Returns the fraction of the light of a wavelength (mm) that one fan sends beyond `r_mm` from the middle, both sides
+    /// together.
     #[must_use]
     pub fn of_fan(&self, fan: &Fan, r_mm: f64, wavelength_mm: f64) -> f64 {
         wavelength_mm * fan.length / (2.0 * PI * PI * self.area * r_mm)
     }
 
-    /// Returns the fraction of the light per mm^2 at a place on film, mm from the middle, averaged over fringes and over a cell with these
-    /// half sides. With `without_boxes` it leaves out what the boxes take of each spike: see [`Wings::boxes`].
+    /// Returns the fraction of the light per mm^2 at a place on film (mm from the middle of the pattern). It is averaged over
+    /// fringes and over a cell with the half sides `half_mm`. `without_boxes` subtracts from each spike the light of its boxes;
+    /// see [`Wings::boxes`].
     #[must_use]
     pub fn intensity(&self, at: [f64; 2], half_mm: [f64; 2], wavelength_mm: f64, without_boxes: bool) -> f64 {
         let r2 = at[0] * at[0] + at[1] * at[1];
@@ -118,8 +120,9 @@ impl Wings {
         (if without_boxes { all } else { all.max(0.0) }) / (4.0 * PI * PI * self.area * r2 * r2)
     }
 
-    /// Returns two boxes that approximate a spike across its width: for each its fraction of the light, and its half width in wavelengths
-    /// over the length of the line. Together they are as high as the middle of the spike, and hold nine tenths of it.
+    /// Returns two boxes that approximate a spike across its width. For each they are its fraction of the spike's light, and its
+    /// half width in units of wavelength over the length of the line. Together they are as high as the middle of the spike, and
+    /// hold nine tenths of it.
     #[must_use]
     pub fn boxes() -> [[f64; 2]; 2] {
         [[0.7, 0.42], [0.2, 0.6]]

@@ -1,6 +1,6 @@
 //! Decoding of text: UTF-8, UTF-16 in either byte order with or without a byte order mark, or Latin-1.
 
-/// Decodes the bytes of a file as text. Invalid UTF-16 becomes the replacement character.
+/// Decodes the bytes of a file as text: UTF-8, UTF-16 or Latin-1. Invalid UTF-16 becomes the replacement character.
 #[must_use]
 pub fn text(bytes: &[u8]) -> String {
     match bytes {

@@ -50,7 +50,7 @@ const EVERYDAY: [(&str, &str); 28] = [
 /// A user's own glass catalog, read from an AGF file.
 #[derive(Clone, Debug)]
 pub struct UserCatalog {
-    /// Name of the file as written in a lens file.
+    /// Name of the file, as a lens file refers to it.
     pub file: String,
     /// Glasses of the catalog.
     pub glasses: Vec<Glass>,

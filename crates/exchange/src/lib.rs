@@ -47,7 +47,7 @@ pub use prescription::{
 
 use spectra_core::params::Faults;
 
-/// Largest file that is read, bytes (16 MiB). UTF-16 doubles the size of a text.
+/// Size of the largest file that is read, bytes (16 MiB). UTF-16 doubles the size of a text.
 pub const MAX_BYTES: u64 = 16 << 20;
 
 /// Largest number of surfaces and coordinate breaks read from one file.
@@ -77,7 +77,7 @@ impl Format {
         }
     }
 
-    /// Returns a hint that says what to write in such a file so that a surface limits the light.
+    /// Returns a hint that says what to write in a file of this format so that a surface limits the light.
     #[must_use]
     pub fn how_to_clip(self) -> &'static str {
         match self {
@@ -93,7 +93,7 @@ impl Format {
         }
     }
 
-    /// Returns a hint that says what to write in such a file so that a surface is the stop.
+    /// Returns a hint that says what to write in a file of this format so that a surface is the stop.
     #[must_use]
     pub fn how_to_stop(self) -> &'static str {
         match self {
@@ -107,13 +107,14 @@ impl Format {
 /// Reads a lens file. `name` is the name of the file in error messages.
 ///
 /// # Errors
-/// The file is not a lens of this format: too large, without surfaces, or with a value that is not a number. All faults are reported at
-/// once, with line and column.
+/// The file is no lens of this format: it is too large, has no surfaces, or has a value that is not a number. All faults are
+/// reported at once, with line and column.
 pub fn read(format: Format, name: &str, bytes: &[u8]) -> Result<Prescription, Faults> {
     read_with(format, name, bytes, &[])
 }
 
-/// Reads a lens file and searches for its glasses in the catalogs `own` first. `name` is the name of the file in error messages.
+/// Reads a lens file whose glasses are searched for in the catalogs `own` first. `name` is the name of the file in error
+/// messages.
 ///
 /// # Errors
 /// The same as for [`read`].

@@ -1,9 +1,9 @@
 //! The prescription of a lens: what all programs mean by a lens, in millimeters and degrees.
 
-/// A lens as stated by a file.
+/// A lens as a file states it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Prescription {
-    /// Name of the lens; may be empty.
+    /// Name of the lens; empty if the file states none.
     pub name: String,
     /// Maker, if known.
     pub maker: Option<String>,
@@ -11,13 +11,13 @@ pub struct Prescription {
     pub patent: Option<String>,
     /// Year of design, if known.
     pub year: Option<i32>,
-    /// Spectral line of the stated indices, if it is not d.
+    /// Spectral line of the stated indices; `None` for the d line.
     pub reference_line: Option<String>,
-    /// Surfaces and coordinate breaks, in the order of the light, without the object and the image.
+    /// Surfaces and coordinate breaks, in the order in which light meets them, without the object and the image.
     pub items: Vec<AxisItem>,
     /// Wavelengths listed in the file.
     pub wavelengths: Vec<Wavelength>,
-    /// Index of the primary wavelength.
+    /// Index of the primary wavelength in `wavelengths`.
     pub primary: Option<usize>,
     /// Field points listed in the file.
     pub fields: Option<Fields>,
@@ -25,13 +25,14 @@ pub struct Prescription {
     pub system_aperture: Option<SystemAperture>,
     /// Distance of the object in front of the first surface, mm; `None` is infinity.
     pub object_distance_mm: Option<f64>,
-    /// Origin of the clear sizes, as written in a lens file: `stated`, `computed`, `guessed`, or `fitted to ...`.
+    /// Origin of the clear sizes, as written in a lens file: `stated`, `computed`, `guessed`, or `fitted to` with what was
+    /// measured.
     pub rims: Option<String>,
-    /// Whether the size of the stop was computed from the beam of the file, instead of being stated.
+    /// Whether the size of the stop was computed from the beam of the file, instead of being stated in the file.
     pub stop_is_computed: bool,
     /// Further remarks on the file.
     pub remarks: Vec<String>,
-    /// Everything that could not be carried over.
+    /// Notes on everything that could not be carried over.
     pub left_out: Vec<Note>,
 }
 
@@ -40,9 +41,9 @@ pub struct Prescription {
 pub struct Note {
     /// Line of the file, from 1; 0 if no line applies.
     pub line: usize,
-    /// Description, one line.
+    /// Description of what was left out, in one line.
     pub text: String,
-    /// Whether light takes another path without it than in the program that wrote the file.
+    /// Whether rays run differently without it than in the program that wrote the file.
     pub alters: bool,
 }
 
@@ -65,7 +66,7 @@ pub enum AxisItem {
 }
 
 impl AxisItem {
-    /// Distance to the next item along the (new) z axis, mm.
+    /// Distance to the next item along the z axis behind this item, mm.
     #[must_use]
     pub fn thickness_mm(&self) -> f64 {
         match self {
@@ -83,12 +84,13 @@ impl AxisItem {
     }
 }
 
-/// A coordinate break: a move of the axis.
+/// A coordinate break: a shift and a rotation of the axis for all items that follow.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CoordinateBreak {
     /// Shift and rotation of the axis.
     pub by: Displacement,
-    /// Order: if true, rotate about z, y, x in that order, then shift; if false, shift, then rotate about x, y, z.
+    /// Order of shift and rotations. If true, rotations about z, y and x (in that order) come before the shift; if false, the
+    /// shift comes first, then rotations about x, y and z.
     pub tilt_first: bool,
     /// Distance to the next item along the new z axis, mm.
     pub thickness_mm: f64,
@@ -99,12 +101,12 @@ pub struct CoordinateBreak {
 pub struct Displacement {
     /// Shift along x and y, mm.
     pub decenter_mm: [f64; 2],
-    /// Rotation about x, then the new y, then the new z, degrees.
+    /// Rotation about x, then about the new y, then about the new z, degrees.
     pub tilt_deg: [f64; 3],
 }
 
 impl Displacement {
-    /// Whether shift and rotation are zero.
+    /// Returns whether shift and rotation are both zero.
     #[must_use]
     pub fn is_none(&self) -> bool {
         self.decenter_mm == [0.0; 2] && self.tilt_deg == [0.0; 3]
@@ -118,19 +120,19 @@ pub struct Surface {
     pub shape: SurfaceShape,
     /// Distance to the next vertex, mm; for the last surface, to the image plane.
     pub thickness_mm: f64,
-    /// Medium behind the surface. A mirror ignores it: the medium in front continues.
+    /// Medium behind the surface. For a mirror it is ignored, because the medium in front continues.
     pub medium: Medium,
     /// Whether the surface reflects.
     pub mirror: bool,
-    /// Whether the surface is the aperture stop (true for [`SurfaceShape::Stop`] too).
+    /// Whether the surface is the aperture stop; also true for [`SurfaceShape::Stop`].
     pub stop: bool,
-    /// Clear semi-diameter beyond which light is blocked, mm.
+    /// Clear semi-diameter beyond which light is blocked, mm; `None` if no light is blocked.
     pub semi_diameter_mm: Option<f64>,
     /// Semi-diameter of the element's edge for drawings, mm; it does not block light.
     pub outer_semi_diameter_mm: Option<f64>,
-    /// Further apertures that light must pass.
+    /// Further apertures that limit the light at this surface.
     pub apertures: Vec<Aperture>,
-    /// Displacement of this surface alone; the following ones are not moved.
+    /// Displacement of this surface alone; the surfaces that follow stay where they are.
     pub displacement: Displacement,
     /// Comment of the file on this surface; may be empty.
     pub comment: String,
@@ -214,7 +216,7 @@ pub enum SurfaceShape {
 }
 
 impl SurfaceShape {
-    /// Returns a plane, a sphere or a conic, whichever is the simplest. An infinite radius gives a plane.
+    /// Returns a plane, a sphere or a conic, whichever is the simplest. `radius` is in mm; infinity means a plane.
     #[must_use]
     pub fn conic(radius: f64, conic: f64) -> Self {
         if radius.is_infinite() {
@@ -230,9 +232,9 @@ impl SurfaceShape {
 /// Ordering and normalization of Zernike terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ZernikeOrdering {
-    /// Noll's ordering, orthonormal.
+    /// Noll's ordering, in which terms are orthonormal.
     Noll,
-    /// Fringe ordering (University of Arizona), amplitude 1 at the edge.
+    /// Fringe ordering (University of Arizona), in which terms have amplitude 1 at the edge.
     Fringe,
 }
 
@@ -246,35 +248,35 @@ pub enum Medium {
     Glass {
         /// Full name, such as `SCHOTT/N-BK7`.
         name: String,
-        /// Index at d, if the file states a compatible one.
+        /// Index at the d line, if the file states one that is compatible with the glass.
         nd: Option<f64>,
-        /// Abbe number, if the file states a compatible one.
+        /// Abbe number, if the file states one that is compatible with the glass.
         vd: Option<f64>,
     },
     /// A glass that is defined by figures alone.
     Model {
-        /// Index at d.
+        /// Index at the d line.
         nd: f64,
         /// Abbe number; `None` means no dispersion.
         vd: Option<f64>,
-        /// Index at g, if the dispersion is known better.
+        /// Index at the g line, if the dispersion is known better than by the Abbe number.
         ng: Option<f64>,
     },
-    /// A glass name that no catalog has, without figures; the user must define it.
+    /// A glass name that no catalog has and for which the file states no figures; the user must define it.
     Unknown {
         /// Name as written in the file.
         name: String,
     },
 }
 
-/// An aperture that light must pass.
+/// An aperture that limits the light at a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aperture {
     /// Outline of the aperture.
     pub shape: ApertureShape,
     /// Center of the aperture, mm.
     pub center_mm: [f64; 2],
-    /// Whether the aperture blocks light inside instead of outside.
+    /// Whether the aperture blocks light inside its outline instead of outside.
     pub obscures: bool,
 }
 
@@ -307,7 +309,7 @@ pub enum ApertureShape {
         /// Corners, mm.
         points: Vec<[f64; 2]>,
     },
-    /// An aperture of this program that no other program has.
+    /// An aperture of this program's own lens files that other programs do not have.
     Other {
         /// Name of the aperture's shape.
         name: String,
@@ -326,9 +328,9 @@ pub struct Wavelength {
 /// Field points listed in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fields {
-    /// Meaning of the coordinates.
+    /// Meaning of the points' coordinates.
     pub kind: FieldKind,
-    /// Coordinates (x, y) of each point: degrees or mm.
+    /// Coordinates (x, y) of each point, in degrees or mm as `kind` says.
     pub points: Vec<[f64; 2]>,
 }
 
@@ -356,7 +358,7 @@ pub enum SystemAperture {
     ObjectNumericalAperture(f64),
     /// Numerical aperture in image space.
     ImageNumericalAperture(f64),
-    /// Size of the stop, which the surface of the stop states.
+    /// Size of the stop, as stated at the surface of the stop.
     StopSize,
 }
 

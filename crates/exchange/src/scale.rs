@@ -5,10 +5,10 @@ use crate::{
 };
 
 impl Prescription {
-    /// Returns the prescription with all lengths times `factor`: radii, gaps, rims, apertures and displacements. A coefficient of r^k is
-    /// multiplied by `factor`^(1-k). Patents state many lenses for a focal length of 1 or 100.
+    /// Returns the prescription with all lengths multiplied by `factor`: radii, gaps, rims, apertures and displacements. A
+    /// coefficient of r^k is multiplied by `factor`^(1-k). Patents state many lenses for a focal length of 1 or 100.
     ///
-    /// Quantities that relate to wavelengths do not scale: a grating keeps its lines per mm.
+    /// Quantities that relate to wavelengths stay as they are: a grating keeps its lines per mm.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         for item in &mut self.items {

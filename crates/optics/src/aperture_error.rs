@@ -20,7 +20,7 @@ pub enum ApertureError {
         asked: f64,
         /// F-number of the lens wide open.
         widest: f64,
-        /// Rim that limits the aperture; `None` if no rim does.
+        /// Rim that limits the aperture; `None` if it is not one rim.
         rim: Option<LimitingRim>,
     },
     /// The lens has no stop that could be set.
@@ -37,11 +37,12 @@ pub enum ApertureError {
 /// The rim that limits the axial beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitingRim {
-    /// Number of the surface of the rim, from 1.
+    /// Number of the surface that has the rim, from 1.
     pub surface: u32,
-    /// Clear semi-diameter of the surface, mm.
+    /// Clear semi-diameter of that surface, mm.
     pub semi_diameter_mm: f64,
-    /// Semi-diameter that the requested f-number would need there, mm; `None` if even without rims no ray leaves that steeply.
+    /// Semi-diameter that the requested f-number would need there, mm. `None` if no ray leaves at such a steep angle even without
+    /// rims.
     pub needed_mm: Option<f64>,
 }
 

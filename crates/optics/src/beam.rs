@@ -10,13 +10,13 @@ use spectra_core::{Isa, RayBatch};
 use spectra_glass::DispersionError;
 use spectra_tracer::Indices;
 
-/// The rays of one object point behind a lens, in the frame of the image plane. Plates in front of the frame are included.
-/// They move with the frame, so if the frame moves back by z, a ray meets it at `x_mm + z * slope_x`.
+/// The rays of one object point behind a lens, in the frame of the image plane. Plates in front of the frame are included; they
+/// move with the frame. If the frame moves back by z, a ray meets it at `x_mm + z * slope_x`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Beam {
-    /// x of each ray on a frame at z = 0, mm.
+    /// Position x of each ray on the plane z = 0, mm.
     pub x_mm: Vec<f64>,
-    /// y of each ray on a frame at z = 0, mm.
+    /// Position y of each ray on the plane z = 0, mm.
     pub y_mm: Vec<f64>,
     /// Slope dx/dz of each ray.
     pub slope_x: Vec<f64>,
@@ -42,8 +42,9 @@ struct Moments {
 }
 
 impl Beam {
-    /// Traces the light of an object point that passes a lens: a grid of `cells` by `cells` rays over the passing region for each
-    /// wavelength (nm) with its weight. Returns `None` if nothing passes, or no surface states a size.
+    /// Traces the light of an object point through a lens. `light` is a list of wavelengths (nm) with their weights. For each
+    /// wavelength, a grid of `cells` by `cells` rays covers the passing region. Returns `None` if no light passes, or no surface
+    /// states a size.
     ///
     /// # Errors
     /// A medium has no usable index at a wavelength.
@@ -109,22 +110,23 @@ impl Beam {
         }
     }
 
-    /// RMS distance of the rays from their centroid on the plane `z_mm` behind the image plane, mm.
+    /// Returns the RMS distance of the rays from their centroid on the plane `z_mm` behind the image plane, mm.
     #[must_use]
     pub fn rms_mm(&self, z_mm: f64) -> f64 {
         let m = self.moments();
         (m.places + z_mm * (2.0 * m.mixed + z_mm * m.slopes)).max(0.0).sqrt()
     }
 
-    /// Plane on which the RMS distance of the rays from their centroid is smallest, mm behind the image plane; `None` for parallel rays.
+    /// Returns how far (mm) behind the image plane the RMS distance of the rays from their centroid is smallest; `None` for
+    /// parallel rays.
     #[must_use]
     pub fn least_rms_z_mm(&self) -> Option<f64> {
         let m = self.moments();
         Some(-m.mixed / m.slopes).filter(|z| z.is_finite())
     }
 
-    /// Contrast of a grating of `per_mm` line pairs per mm by geometrical optics, the mean of lines along x and along y, on
-    /// the plane `z_mm` behind the image plane.
+    /// Returns the geometrical contrast (modulation) of a grating of `per_mm` line pairs per mm, on the plane `z_mm` behind the
+    /// image plane. It is the mean of lines along x and along y.
     #[must_use]
     pub fn contrast(&self, z_mm: f64, per_mm: f64) -> f64 {
         let [across, along] = self.contrasts(z_mm, per_mm);
@@ -150,7 +152,8 @@ impl Beam {
         }
     }
 
-    /// Plane on which the contrast at `per_mm` line pairs per mm is highest, mm behind the image plane; `None` for parallel rays.
+    /// Returns how far (mm) behind the image plane the contrast at `per_mm` line pairs per mm is highest; `None` for parallel
+    /// rays.
     #[must_use]
     pub fn best_contrast_z_mm(&self, per_mm: f64) -> Option<f64> {
         let mean = |[x, y]: [f64; 2]| 0.5 * (x + y);

@@ -27,7 +27,7 @@ const NEAR: f64 = 1e-11;
 const NEAR_ENOUGH: f64 = 1e-9;
 
 impl Optics {
-    /// Returns the rim that limits the axial beam of a lens as it stands; `None` if none does, or the lens is not round.
+    /// Returns the rim that limits the axial beam of the lens as it is set; `None` if no rim does, or the lens is not round.
     #[must_use]
     pub fn axial_rim(&self) -> Option<LimitingRim> {
         limiting_rim(self, self.marginal_ray().ok()?, None)
@@ -50,8 +50,8 @@ fn limiting_rim(optics: &Optics, widest: MarginalRay, open: Option<&RayPath>) ->
     Some(LimitingRim { surface, semi_diameter_mm, needed_mm })
 }
 
-/// Sets the stop of a lens so that the real marginal ray leaves at this f-number. The f-number in the lens's name, and any value between
-/// it and the real one, means full aperture; a note on the lens then says so.
+/// Sets the stop of a lens so that the real marginal ray leaves at this f-number. The f-number in the lens's name, and any value
+/// between it and the real one, means full aperture; a note on the lens then says so.
 ///
 /// # Errors
 /// [`ApertureError`] if the lens has no stop or is not fast enough.

@@ -12,16 +12,16 @@ use spectra_tracer::Indices;
 pub struct FieldLimit {
     /// Largest field angle from which any light passes, rad.
     pub field_rad: f64,
-    /// Cause and surface (from 1) at which the last light beyond this angle ends; `None` if the field reaches all round.
+    /// Cause and surface (from 1) that end the last light beyond this angle; `None` if the field has no limit at any angle.
     pub limit: Option<(Loss, u32)>,
 }
 
 /// The chief ray of a field point: the ray through the center of the stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChiefRay {
-    /// Field angle in rad, as for [`ObjectPoint::on_plane`].
+    /// Field angle in rad, measured as for [`ObjectPoint::on_plane`].
     pub field_rad: f64,
-    /// Point of the ray in front of the lens, mm in the frame of the lens.
+    /// Starting point of the ray in front of the lens, mm in the frame of the lens.
     pub start_mm: DVec3,
     /// Unit direction of the ray in front of the lens.
     pub direction: DVec3,
@@ -29,14 +29,15 @@ pub struct ChiefRay {
     pub image_mm: [f64; 2],
     /// Unit direction of the ray behind the lens, in the frame of the image plane.
     pub exit_direction: DVec3,
-    /// Distances behind the image plane at which rays close to the chief ray meet, mm along the plane's z: in the x-z section (sagittal)
-    /// and in the y-z section (tangential). They come from real rays, not from formulas of surfaces. If the lens is not symmetric about the
-    /// y-z plane, they say where the pencil is narrowest in x and in y. `None` if the rays are parallel.
+    /// Distances behind the image plane at which rays close to the chief ray meet, mm along the plane's z: in the x-z section
+    /// (sagittal) and in the y-z section (tangential). They come from real rays, not from formulas for each surface. If the lens
+    /// is not symmetric about the y-z plane, they say where the pencil is narrowest in x and in y. `None` if the rays are
+    /// parallel.
     pub foci_mm: [Option<f64>; 2],
 }
 
 impl ChiefRay {
-    /// Angle to the normal of the image plane in the y-z section, rad: positive if the ray runs toward +y.
+    /// Angle between the ray and the normal of the image plane in the y-z section, rad: positive if the ray runs toward +y.
     #[must_use]
     pub fn exit_angle_rad(&self) -> f64 {
         spectra_core::math::atan2(self.exit_direction.y, self.exit_direction.z.abs())
@@ -54,8 +55,8 @@ const CLOSE: f64 = 1e-4;
 /// Rays that meet farther away than this (mm) count as parallel: rounding allows no more.
 const PARALLEL_MM: f64 = 1e7;
 impl Optics {
-    /// Returns the largest field angle from which any real ray passes a lens, for objects at this distance (mm; infinity allowed), at the
-    /// reference line. Returns `None` if nothing passes on the axis, or no surface states a size.
+    /// Returns the largest field angle from which any real ray passes the lens at the reference line. Objects are at the distance
+    /// `object_mm` (infinity allowed). Returns `None` if no light passes on the axis, or no surface states a size.
     ///
     /// # Errors
     /// A medium has no usable index.
@@ -101,9 +102,9 @@ impl Optics {
 }
 
 impl Optics {
-    /// Returns the chief rays of field points at the reference line: real rays through the center of the stop, whether or not the rims let
-    /// them pass. The fields (rad) ascend from 0; each ray is found from its neighbor. An entry is `None` if there is no such ray; all
-    /// entries are if the lens has no stop.
+    /// Returns the chief rays of field points at the reference line: real rays through the center of the stop, whether or not the
+    /// rims let them pass. The angles in `fields_rad` ascend from 0, because each ray is found from the one before. An entry is
+    /// `None` if there is no such ray; all entries are `None` if the lens has no stop.
     ///
     /// # Errors
     /// A medium has no usable index.

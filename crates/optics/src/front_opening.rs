@@ -5,14 +5,14 @@ use glam::DVec3;
 use spectra_lens::Lens;
 use spectra_tracer::Travel;
 
-/// A sphere around the clear part of the first surface, which all light that enters a lens crosses; mm, frame of the lens.
+/// A sphere around the clear part of the first surface, mm in the frame of the lens. All light that enters the lens crosses it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrontOpening {
     center: DVec3,
     radius_mm: f64,
 }
 
-/// The disk across the line of sight that a [`FrontOpening`] covers as seen from a point.
+/// The disk that a [`FrontOpening`] covers as seen from a point, at right angles to the line of sight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrontDisk {
     /// Center of the disk, mm in the frame of the lens.
@@ -45,16 +45,17 @@ impl FrontOpening {
         self.radius_mm
     }
 
-    /// Returns the disk that the sphere covers as seen from a point, mm in the frame of the lens; `None` if the point lies inside.
+    /// Returns the disk that the sphere covers as seen from a point (mm, frame of the lens); `None` if the point lies inside the
+    /// sphere.
     #[must_use]
     pub fn seen_from(&self, point: DVec3) -> Option<FrontDisk> {
         let (is_outside, disk) = self.disk_from(point);
         is_outside.then_some(disk)
     }
 
-    /// Returns whether `point` (mm, frame of the lens) lies outside this sphere, and the disk that the sphere covers as seen from
-    /// the point. The disk is valid only if the point lies outside. Unlike [`FrontOpening::seen_from`], this function is
-    /// branch-free, so loops over rays can be vectorized.
+    /// Returns whether `point` (mm, frame of the lens) lies outside the sphere, and the disk that the sphere covers as seen from
+    /// there. The disk is valid only if the point lies outside. Unlike [`FrontOpening::seen_from`], this function is branch-free,
+    /// so loops over rays can be vectorized.
     #[must_use]
     #[inline(always)]
     pub fn disk_from(&self, point: DVec3) -> (bool, FrontDisk) {

@@ -14,15 +14,15 @@ use spectra_glass::DispersionError;
 use spectra_lens::Lens;
 use spectra_tracer::{Indices, Travel};
 
-/// The marginal ray of an axial object at infinity. For a lens that is not round, it is the marginal ray of the round pencil with the same
-/// areas in front of and behind the lens.
+/// The marginal ray of an axial object at infinity. If the lens is not round, the ray belongs to the round pencil that has the
+/// same areas in front of and behind the lens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MarginalRay {
-    /// Height in front of the lens, mm: half the diameter of the real entrance pupil.
+    /// Height of the ray in front of the lens, mm: half the diameter of the real entrance pupil.
     pub height_mm: f64,
-    /// Sine of the angle between ray and axis behind the lens.
+    /// Sine of the angle between the ray and the axis behind the lens.
     pub sine: f64,
-    /// Height at the stop, mm; `None` if the lens has no stop.
+    /// Height of the ray at the stop, mm; `None` if the lens has no stop.
     pub stop_height_mm: Option<f64>,
 }
 
@@ -88,8 +88,8 @@ fn edge(optics: &Optics, bundle: &Bundle<'_>, line: &WindowLine) -> Option<Axial
 }
 
 impl Optics {
-    /// Returns the highest axial ray that passes the lens as it stands. If the lens is not round, returns that of the round pencil of equal
-    /// area.
+    /// Returns the marginal ray: the highest axial ray that passes the lens as it is set. If the lens is not round, it is the
+    /// marginal ray of the round pencil of equal area.
     ///
     /// # Errors
     /// [`ApertureError::Unlimited`] if no rim limits the light, [`ApertureError::Medium`] if a medium has no usable index.
@@ -132,9 +132,10 @@ pub(crate) fn is_round_but_for_apertures(lens: &Lens) -> bool {
 }
 
 impl Optics {
-    /// Returns the fraction of the light of an axial object at infinity, within the entrance pupil of `marginal`, that reaches the image.
-    /// It includes losses at coatings and mirrors, in glass, and at a central obstruction. If the lens is not round about its axis, the
-    /// fraction refers to the rays that pass. Without a `marginal` ray, it is the transmittance along the axis.
+    /// Returns the fraction of the light of an axial object at infinity, within the entrance pupil of `marginal`, that reaches
+    /// the image. It includes losses at coatings and mirrors, in glass, and at a central obstruction. If the lens is not round
+    /// about its axis, the fraction refers to the rays that pass. If `marginal` is `None`, the result is the transmittance along
+    /// the axis.
     ///
     /// # Errors
     /// A medium has no usable index.

@@ -7,14 +7,14 @@ use spectra_tracer::{Indices, Tracer};
 use std::ops::Deref;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The rims and apertures of a lens that end rays.
+/// The rims and apertures that end rays in a trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clipping {
     /// All rims and apertures end rays, as the lens states them.
     AsStated,
-    /// Irises count as the circle of their size, without blades: this defines an f-number.
+    /// Irises count as circles of equal area, without blades; an f-number is defined in this way.
     RoundIris,
-    /// The stop counts as the circle of its semi-diameter, whatever apertures stand in it.
+    /// The stop counts as the circle of its semi-diameter, whatever apertures it has.
     RoundStop,
     /// No rim and no aperture ends a ray. A ray ends only if it misses a surface or is totally reflected.
     None,
@@ -45,10 +45,10 @@ impl Clipping {
 /// A cached tracer with the indices and the clipping for which it was made.
 type Kept = (Indices, Clipping, Arc<Tracer>);
 
-/// A lens made ready to trace.
+/// A lens that is ready for tracing, with a cache of its tracers.
 ///
-/// Making a [`Tracer`] fits the dispersion of every glass, so each tracer is made on first use and cached. An `Optics`
-/// dereferences to its [`Lens`].
+/// Creating a [`Tracer`] fits the dispersion of every glass. Therefore each tracer is created on first use and cached. An
+/// `Optics` dereferences to its [`Lens`].
 #[derive(Debug)]
 pub struct Optics {
     lens: Lens,
@@ -56,13 +56,13 @@ pub struct Optics {
 }
 
 impl Optics {
-    /// Wraps `lens` for tracing; no tracer is made yet.
+    /// Wraps `lens` for tracing, without creating a tracer yet.
     #[must_use]
     pub fn new(lens: Lens) -> Self {
         Self { lens, tracers: Mutex::default() }
     }
 
-    /// Returns the tracer of the lens with its rims and apertures as stated.
+    /// Returns the tracer of the lens with all its rims and apertures.
     ///
     /// # Errors
     /// A medium has no usable index at one of the wavelengths.
@@ -70,7 +70,7 @@ impl Optics {
         self.tracer_clipping(indices, Clipping::AsStated)
     }
 
-    /// Returns the tracer of the lens with other rims and apertures.
+    /// Returns the tracer of the lens with the rims and apertures that `clipping` keeps.
     ///
     /// # Errors
     /// A medium has no usable index at one of the wavelengths.

@@ -9,10 +9,12 @@ use crate::source::{Source, shortened};
 use crate::{MAX_ITEMS, glass, number};
 use spectra_core::params::{Fault, Faults};
 
-/// Reads the text of a table. `name` is the name of the file in error messages; the catalogs `own` are searched for its glasses first.
+/// Reads the text of a table. `name` is the name of the file in error messages; glasses are searched for in the catalogs `own`
+/// first.
 ///
 /// # Errors
-/// The table has no usable columns, no rows or several lenses. Each cell that cannot be read is reported, with its position.
+/// The table has no usable columns, no rows or several lenses, or cells cannot be read; each such cell is reported with its
+/// position.
 pub fn read(name: &str, text: &str, own: &[UserCatalog]) -> Result<Prescription, Faults> {
     let printed = patent::plain(text);
     let retyped = patent::retype(&printed);

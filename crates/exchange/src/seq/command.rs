@@ -18,11 +18,11 @@ const HARMLESS: [&str; 52] = [
     "FCY", "XAC",
 ];
 
-/// Reads the text of a `.seq` file. `name` is the name of the file in error messages; the catalogs `own` are searched for its glasses
-/// first.
+/// Reads the text of a `.seq` file. `name` is the name of the file in error messages; glasses are searched for in the catalogs
+/// `own` first.
 ///
 /// # Errors
-/// The file has no surfaces or more than [`MAX_ITEMS`], or a value without which there is no lens is not a number.
+/// The file has no surfaces or more than [`MAX_ITEMS`], or a value that the lens needs is not a number.
 pub fn read(name: &str, text: &str, own: &[UserCatalog]) -> Result<Prescription, Faults> {
     let source = Source::new(name, text);
     let mut reader = Reader { source: &source, ..Reader::new(&source) };

@@ -11,11 +11,11 @@ use spectra_core::resources::{Resource, ResourceError, Resources};
 use spectra_glass::file::{self, Figures, StatedLines};
 use spectra_glass::{LineTriple, ModelGlass, lines};
 
-/// Reads a lens file. Data that no other program has are listed in `left_out`. The file must be valid: a lens is loaded before it is
-/// exported.
+/// Reads a lens file of this program as a prescription. Data that other programs do not have are listed in
+/// [`Prescription::left_out`]. The file must be valid, which loading the lens checks.
 ///
 /// # Errors
-/// An invalid value among those that are read.
+/// A value that is needed is not valid.
 pub fn read(params: &Params) -> Result<Prescription, Faults> {
     let lines = match value::<StatedLines>(params, "reference-line")? {
         Some(lines) => lines.triple(params, "reference-line")?,

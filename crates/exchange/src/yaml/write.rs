@@ -10,8 +10,8 @@ use crate::prescription::{
 /// Largest number of notes that are written.
 const MOST_NOTES: usize = 200;
 
-/// Writes a lens file and returns its text. Everything that was not carried over is listed in comments at the top; notes that alter the
-/// path of light are repeated in the remark. `source` is the name of the file that the lens comes from.
+/// Writes a prescription as the text of a lens file. Comments at the top list everything that was not carried over; notes that
+/// alter the path of light are repeated in the remark. `source` is the name of the file from which the lens comes.
 #[must_use]
 pub fn write(lens: &Prescription, source: Option<&str>) -> String {
     let mut out = String::new();

@@ -15,11 +15,11 @@ use std::collections::BTreeMap;
 /// Distance (mm) from which on an object counts as at infinity.
 const INFINITY_MM: f64 = 1e10;
 
-/// Reads the text of a `.zmx` file. `name` is the name of the file in error messages; the catalogs `own` are searched for its glasses
-/// first.
+/// Reads the text of a `.zmx` file. `name` is the name of the file in error messages; glasses are searched for in the catalogs
+/// `own` first.
 ///
 /// # Errors
-/// The file is not sequential, has no surfaces or more than [`MAX_ITEMS`], or a value without which there is no lens is not a number.
+/// The file is not sequential, has no surfaces or more than [`MAX_ITEMS`], or a value that the lens needs is not a number.
 pub fn read(name: &str, text: &str, own: &[UserCatalog]) -> Result<Prescription, Faults> {
     let source = Source::new(name, text);
     let records = sort(source.text());

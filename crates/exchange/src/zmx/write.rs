@@ -11,16 +11,16 @@ use crate::source::shortened;
 use spectra_glass::{Catalog, Line, lines};
 use std::fmt::Write;
 
-/// The text of a written file, and what it could not hold.
+/// The text of a written file, with notes on what it could not hold.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
     /// Text of the file.
     pub text: String,
-    /// Notes of what could not be carried over, including those of the prescription; line numbers refer to the lens file.
+    /// Notes on what could not be carried over, including those of the prescription. Line numbers refer to the lens file.
     pub left_out: Vec<Note>,
 }
 
-/// Encodes the text of a file as the program writes it: as ASCII if possible, otherwise as UTF-16 with a byte order mark.
+/// Encodes the text of a file as OpticStudio does: as ASCII if possible, otherwise as UTF-16 with a byte order mark.
 #[must_use]
 pub fn encode(text: &str) -> Vec<u8> {
     if text.is_ascii() {
@@ -29,8 +29,8 @@ pub fn encode(text: &str) -> Vec<u8> {
     [0xff, 0xfe].into_iter().chain(text.encode_utf16().flat_map(u16::to_le_bytes)).collect()
 }
 
-/// Writes a lens as a `.zmx` file. Lengths are in mm, with all digits of the numbers. A surface that is displaced alone is written between
-/// two coordinate breaks.
+/// Writes a lens as a `.zmx` file. Lengths are in mm, and numbers have all digits. A surface that is displaced alone is written
+/// between two coordinate breaks.
 #[must_use]
 pub fn write(lens: &Prescription) -> Written {
     let mut writer = Writer {

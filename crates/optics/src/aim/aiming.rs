@@ -12,7 +12,7 @@ use spectra_core::{Loss, RayBatch};
 /// The mapping from numbers in the unit square to points on the ellipse of a zone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AimPattern {
-    /// Shirley and Chiu's concentric map, which keeps neighbors together.
+    /// Shirley and Chiu's concentric map, in which neighbors stay neighbors.
     Disk,
     /// Rings of equal area: the first number chooses the ring, the second the angle.
     Rings,

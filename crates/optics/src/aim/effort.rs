@@ -1,12 +1,12 @@
 //! The effort of the search for the light that passes.
 
-/// The effort with which a pupil is searched. The estimate of light has no bias either way.
+/// The effort with which a pupil is searched. The estimate of light is unbiased in either case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
-    /// The effort that pays off for a picture.
+    /// The effort that pays off for a finished picture.
     #[default]
     Full,
-    /// A tenth of the time or less, for a first look: few zones and no outlines, so that more rays end on the way.
+    /// A tenth of the time or less, for a first look. There are few zones and no outlines, so more rays end on their way.
     Draft,
 }
 

@@ -13,13 +13,12 @@ use spectra_core::workers::{SingleThread, Workers};
 use spectra_lens::Lens;
 use spectra_tracer::{Tracer, Travel};
 
-/// A table of where light enters the lens, for each point in front of it: the real entrance pupil
-/// as seen from there.
+/// A table of the places where light from each point in front of a lens enters it: the real entrance pupil as seen from there.
 ///
-/// Points are in the frame of the lens (mm, first vertex at the origin). They may lie anywhere in front of or
-/// beside it. They are sorted into zones by the angle at which a point is seen from the paraxial entrance pupil (up to 130
-/// degrees to each side) and by one over its distance. For points nearer than those given to the search,
-/// rays are aimed at the whole first surface: slower, but equally correct.
+/// Points are in the frame of the lens (mm, first vertex at the origin), anywhere in front of the lens or beside it. They are
+/// sorted into zones by angle and by one over the distance. The angle is measured at the paraxial entrance pupil, up to 130
+/// degrees to each side. For points nearer than those given to the search, rays are aimed at the whole first surface: slower, but
+/// equally correct.
 #[derive(Clone, Debug)]
 pub struct FrontPupil {
     table: Table,
@@ -30,15 +29,16 @@ const DEPTH_STEP: f64 = 0.05;
 const MAX_DEPTHS: usize = 6;
 
 impl FrontPupil {
-    /// Searches the front of a lens as traced by `tracer`. `points` are sample source points (mm): the search covers the
-    /// nearest one with its surroundings, and everything farther away. The light has wavelengths from
-    /// `min_nm` to `max_nm`. Returns `None` if no surface states a size.
+    /// Searches the entrance pupil of `lens`, as `tracer` traces it. `points` are sample source points (mm): the search covers
+    /// the nearest one with its surroundings, and everything farther away. The light has wavelengths from `min_nm` to `max_nm`.
+    /// Returns `None` if no surface states a size.
     #[must_use]
     pub fn search(lens: &Lens, tracer: &Tracer, points: &[DVec3], min_nm: f64, max_nm: f64) -> Option<Self> {
         Self::search_on(lens, tracer, points, [min_nm, max_nm], &SingleThread)
     }
 
-    /// Searches like [`FrontPupil::search`], distributed over workers, for light of a band, nm. The result is bit-identical on any workers.
+    /// Searches like [`FrontPupil::search`], distributed over workers, for light of the band `band_nm`. The result is
+    /// bit-identical on any workers.
     #[must_use]
     pub fn search_on(
         lens: &Lens,
@@ -50,7 +50,7 @@ impl FrontPupil {
         Self::search_by(lens, tracer, points, band_nm, workers, Effort::Full)
     }
 
-    /// Searches like [`FrontPupil::search_on`] with a given effort. Returns `None`, too, if the workers are stopped meanwhile.
+    /// Searches like [`FrontPupil::search_on`] with a given effort. Returns `None` also if the workers are stopped meanwhile.
     #[must_use]
     pub fn search_by(
         lens: &Lens,
@@ -84,23 +84,23 @@ impl FrontPupil {
         Some(Self { table: task.run()? })
     }
 
-    /// Removes the outlines: rays then go all over the ellipse or rectangle of each zone, which contains what passes with a wide
-    /// margin. This is slower, and a reference for the estimate with outlines.
+    /// Removes the outlines: rays then fill the ellipse or rectangle of each zone, which contains the passing light with a wide
+    /// margin. This is slower, and serves as a reference for the estimate with outlines.
     #[must_use]
     pub fn without_outlines(mut self) -> Self {
         self.table.outlines = None;
         self
     }
 
-    /// Aims the rays of a batch, which are at their source points, at the pupil. Each ray then starts at the pupil, and its
-    /// weight is multiplied by the solid angle of the region (sr), so that all of it counts alike. `u` and `v`, one value per ray
-    /// in [0, 1), choose the point of the pupil. Where no light from a source point passes, its rays end as vignetted at the
-    /// first surface. Returns how many end.
+    /// Aims the rays of a batch at the pupil; on entry their positions are their source points. Each ray then starts at the
+    /// pupil, and its weight is multiplied by the solid angle of the region (sr). `u` and `v`, one value per ray in [0, 1),
+    /// choose the point of the pupil. If no light from a source point passes, its rays end as vignetted at the first surface.
+    /// Returns how many rays end.
     pub fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], pattern: AimPattern) -> usize {
         self.table.aim::<false>(rays, u, v, (pattern, AimPart::Whole))
     }
 
-    /// Returns the region for a source point, mm in the frame of the lens; `None` if the point is nearer than
+    /// Returns the region at which rays from a source point (mm, frame of the lens) are aimed; `None` if the point is nearer than
     /// was searched.
     #[must_use]
     pub fn region(&self, point: DVec3) -> Option<AimRegion> {
@@ -108,8 +108,8 @@ impl FrontPupil {
         Some(AimRegion::new(&zone, radial, across, self.table.eye_z_mm))
     }
 
-    /// Position of the reference point from which the angle of a point is measured, mm from the first vertex. It is the paraxial entrance
-    /// pupil or, if that lies far away, the middle of the first surface.
+    /// Position of the point from which the angles of source points are measured, mm from the first vertex. It is the center of
+    /// the paraxial entrance pupil or, if that lies far away, the middle of the first surface.
     #[must_use]
     pub fn eye_z_mm(&self) -> f64 {
         self.table.eye_z_mm
@@ -121,11 +121,11 @@ impl FrontPupil {
 pub struct AimRegion {
     /// Center of the region, mm.
     pub center: DVec3,
-    /// Half-axis in the plane of the point and the axis, mm; zero if nothing passes.
+    /// Half-axis in the plane that contains the point and the axis, mm; zero if no light passes.
     pub half_along: DVec3,
-    /// Half-axis at right angles to that plane, mm.
+    /// Half-axis at right angles to the plane of point and axis, mm.
     pub half_across: DVec3,
-    /// Whether the region is an ellipse; otherwise it is the rectangle around it.
+    /// Whether the region is an ellipse with these half-axes; otherwise it is the rectangle around that ellipse.
     pub ellipse: bool,
 }
 
@@ -141,14 +141,14 @@ impl AimRegion {
         }
     }
 
-    /// Returns the area of the region, mm^2; 0 if nothing passes.
+    /// Returns the area of the region, mm^2; 0 if no light passes.
     #[must_use]
     pub fn area_mm2(&self) -> f64 {
         let unit = if self.ellipse { std::f64::consts::PI } else { 4.0 };
         unit * self.half_along.length() * self.half_across.length()
     }
 
-    /// Whether the line from `point` in `direction` crosses the region.
+    /// Returns whether the line from `point` in `direction` crosses the region.
     #[must_use]
     pub fn holds(&self, point: DVec3, direction: DVec3) -> bool {
         let normal = self.half_along.cross(self.half_across);

@@ -60,7 +60,7 @@ pub(crate) use sphere::Sphere;
 use spectra_lens::Lens;
 use spectra_tracer::Travel;
 
-/// Whether any surface states a size, so that there is a region to aim at.
+/// Returns whether any surface states a size, so that there is a region at which to aim rays.
 #[must_use]
 pub fn has_sizes(lens: &Lens, travel: Travel) -> bool {
     Sphere::around(lens, travel).is_some()

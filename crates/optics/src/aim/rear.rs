@@ -15,12 +15,11 @@ use spectra_core::workers::{SingleThread, Workers};
 use spectra_lens::Lens;
 use spectra_tracer::{Tracer, Travel};
 
-/// A table of where light leaves the lens, for each point of the imager: the real exit pupil as seen from there.
+/// A table of the places where light to each point of the imager leaves a lens: the real exit pupil as seen from there.
 ///
-/// Points are in the frame of the image plane (mm, z = 0 there, the lens at negative z). They may lie
-/// anywhere behind the lens. They are sorted into zones by the angle to the axis at which a point is seen from the last
-/// vertex, and by z if the points differ in z. For points at depths that were not given to the search, rays
-/// are aimed at the whole last surface: slower, but equally correct.
+/// Points are in the frame of the image plane (mm, z = 0 there, the lens at negative z), anywhere behind the lens. They are
+/// sorted into zones by the angle to the axis at which a point is seen from the last vertex, and by z if the points differ in z.
+/// For points at depths that were not given to the search, rays are aimed at the whole last surface: slower, but equally correct.
 #[derive(Clone, Debug)]
 pub struct RearPupil {
     table: Table,
@@ -32,15 +31,16 @@ const DEPTH_STEP: f64 = 0.02;
 const FLAT: f64 = 1e-7;
 
 impl RearPupil {
-    /// Searches the rear of a lens as traced by `tracer`. `points` are sample points all over the imager, including its
-    /// corners (mm); the light has wavelengths from `min_nm` to `max_nm`. Returns `None` if no surface states a size, or
-    /// no point is given.
+    /// Searches the exit pupil of `lens`, as `tracer` traces it. `points` are sample points all over the imager, including its
+    /// corners (mm); the light has wavelengths from `min_nm` to `max_nm`. Returns `None` if no surface states a size, or no point
+    /// is given.
     #[must_use]
     pub fn search(lens: &Lens, tracer: &Tracer, points: &[DVec3], min_nm: f64, max_nm: f64) -> Option<Self> {
         Self::search_on(lens, tracer, points, [min_nm, max_nm], &SingleThread)
     }
 
-    /// Searches like [`RearPupil::search`], distributed over workers, for light of a band, nm. The result is bit-identical on any workers.
+    /// Searches like [`RearPupil::search`], distributed over workers, for light of the band `band_nm`. The result is
+    /// bit-identical on any workers.
     #[must_use]
     pub fn search_on(
         lens: &Lens,
@@ -52,7 +52,7 @@ impl RearPupil {
         Self::search_by(lens, tracer, points, band_nm, workers, Effort::Full)
     }
 
-    /// Searches like [`RearPupil::search_on`] with a given effort. Returns `None`, too, if the workers are stopped meanwhile.
+    /// Searches like [`RearPupil::search_on`] with a given effort. Returns `None` also if the workers are stopped meanwhile.
     #[must_use]
     pub fn search_by(
         lens: &Lens,
@@ -97,42 +97,43 @@ impl RearPupil {
         Some(Self { table: task.run()? })
     }
 
-    /// Widens the pupil for an imager that shifts rays aside by up to `margin_mm` after they were aimed, as glass plates do.
+    /// Widens the pupil for an imager that shifts rays sideways by up to `margin_mm` after they are aimed, as glass plates do.
     #[must_use]
     pub fn widened(self, margin_mm: f64) -> Self {
         Self { table: self.table.widened(margin_mm) }
     }
 
-    /// Removes the outlines: rays then go all over the ellipse or rectangle of each zone, which contains what passes with a wide
-    /// margin. This is slower, and a reference for the estimate with outlines.
+    /// Removes the outlines: rays then fill the ellipse or rectangle of each zone, which contains the passing light with a wide
+    /// margin. This is slower, and serves as a reference for the estimate with outlines.
     #[must_use]
     pub fn without_outlines(mut self) -> Self {
         self.table.outlines = None;
         self
     }
 
-    /// Aims the rays of a batch, which are at points of the imager, at the pupil. Each ray then starts at the pupil, and its weight is
-    /// multiplied by the projected solid angle of the region, sr. On entry each direction holds the imager's
-    /// unit normal. `u` and `v`, one value per ray in [0, 1), choose the point of the pupil. Rays from points that no light reaches
-    /// end, vignetted at the last surface. Returns how many end.
+    /// Aims the rays of a batch at the pupil; on entry their positions are points of the imager, and their directions the
+    /// imager's unit normal. Each ray then starts at the pupil, and its weight is multiplied by the projected solid angle of the
+    /// region (sr). `u` and `v`, one value per ray in [0, 1), choose the point of the pupil. Rays from points that no light
+    /// reaches end as vignetted at the last surface. Returns how many rays end.
     pub fn aim(&self, rays: &mut RayBatch, u: &[f64], v: &[f64]) -> usize {
         self.aim_part(rays, u, v, AimPart::Whole)
     }
 
-    /// Aims rays like [`RearPupil::aim`] at one part of the pupil. The core is the whole pupil if there is no [rim](Self::has_rim).
+    /// Aims rays like [`RearPupil::aim`] at one part of the pupil. If the pupil has no [rim](Self::has_rim), its core is the
+    /// whole pupil.
     pub fn aim_part(&self, rays: &mut RayBatch, u: &[f64], v: &[f64], part: AimPart) -> usize {
         debug_assert!(part != AimPart::Rim || self.has_rim());
         self.table.aim::<true>(rays, u, v, (AimPattern::Disk, part))
     }
 
-    /// Whether the pupil has a rim: outlines have one, ellipses and rectangles do not.
+    /// Returns whether the pupil has a rim, as outlines have; ellipses and rectangles have none.
     #[must_use]
     pub fn has_rim(&self) -> bool {
         self.table.outlines.is_some()
     }
 
-    /// Returns the region for a point of the imager, mm in the frame of the image plane; `None` if the point
-    /// lies at a depth that was not searched.
+    /// Returns the region at which rays from a point of the imager (mm, frame of the image plane) are aimed; `None` at a depth
+    /// that was not searched.
     #[must_use]
     pub fn region(&self, point: DVec3) -> Option<AimRegion> {
         let (zone, radial, across) = self.table.zone::<true>(point)?;

@@ -53,14 +53,14 @@ pub struct WindowLine {
 }
 
 impl WindowLine {
-    /// Returns the point of the window at a distance along the line, mm.
+    /// Returns the point of the window at `along_mm` from the start of the line.
     #[must_use]
     pub fn at(&self, along_mm: f64) -> [f64; 2] {
         [0, 1].map(|k| self.from[k] + along_mm * self.way[k])
     }
 }
 
-/// The light of one point at one wavelength, before it enters a lens. Its methods find which of its rays pass, and how far they reach.
+/// The light of one point at one wavelength. Its methods find which of its rays pass a lens, and how far they reach.
 #[derive(Debug)]
 pub struct Bundle<'o> {
     optics: &'o Optics,
@@ -74,7 +74,7 @@ pub struct Bundle<'o> {
 }
 
 impl<'o> Bundle<'o> {
-    /// Returns the bundle of a point in front of the lens; `None` if none of its light runs toward the lens.
+    /// Returns the bundle of a point in front of the lens; `None` if no light of the point runs toward the lens.
     ///
     /// # Errors
     /// A medium has no usable index.
@@ -107,7 +107,7 @@ impl<'o> Bundle<'o> {
         Ok(Some(Self { optics, tracer, indices, travel, wavelength_nm, window, covered }))
     }
 
-    /// Returns this bundle with other rims and apertures.
+    /// Returns this bundle for a lens with other rims and apertures.
     ///
     /// # Errors
     /// A medium has no usable index.
@@ -115,20 +115,20 @@ impl<'o> Bundle<'o> {
         Ok(Self { tracer: self.optics.tracer_clipping(self.indices, clipping)?, ..self })
     }
 
-    /// Returns half the side of the window, mm: every ray to the lens crosses the window within it.
+    /// Returns half the side of the window, mm. The window contains the crossing of every ray that can reach the lens.
     #[must_use]
     pub fn reach_mm(&self) -> f64 {
         self.window.reach_mm
     }
 
-    /// Returns the line from the middle of the window along its second axis, to its side. For a point on the axis or in the y-z section the
-    /// line lies in that section.
+    /// Returns the line from the middle of the window along its second axis, to the window's edge. For a point on the axis or in
+    /// the y-z section the line lies in that section.
     #[must_use]
     pub fn upward(&self) -> WindowLine {
         WindowLine { from: [0.0; 2], way: [0.0, 1.0], length_mm: self.window.reach_mm }
     }
 
-    /// Returns the ray through a point of the window in front of the lens: its start (mm) and its unit direction.
+    /// Returns the ray through a point of the window in front of the lens: its starting point (mm) and its unit direction.
     #[must_use]
     pub fn ray(&self, place: [f64; 2]) -> (DVec3, DVec3) {
         let (start, direction) = self.window.ray(place);
@@ -161,8 +161,9 @@ impl<'o> Bundle<'o> {
         }
     }
 
-    /// Traces the rays through `places` and returns them as they leave the lens, each at its own index. Their weights are the solid
-    /// angles of equal cells, relative to one in the middle of the window, times the transmittance of the lens.
+    /// Traces the rays through `places` and returns them as they leave the lens. Ray i belongs to `places[i]`. Its weight is the
+    /// solid angle of a cell at this place, relative to an equal cell in the middle of the window, times the transmittance of the
+    /// lens.
     #[must_use]
     pub fn trace(&self, places: &[[f64; 2]]) -> RayBatch {
         let mut rays = RayBatch::new(places.len());
@@ -182,7 +183,7 @@ impl<'o> Bundle<'o> {
         }
     }
 
-    /// Returns, for each of these points of the window, whether its ray passes the lens.
+    /// Returns for each point of the window in `places` whether its ray passes the lens.
     #[must_use]
     pub fn passes(&self, places: &[[f64; 2]]) -> Vec<bool> {
         let mut passes = vec![false; places.len()];
@@ -190,10 +191,11 @@ impl<'o> Bundle<'o> {
         passes
     }
 
-    /// Returns the rectangle of the window that contains everything that passes, to within a cell of the first grid that sees light.
+    /// Returns the rectangle of the window that contains all rays that pass, to within a cell of the first grid that finds such
+    /// rays.
     ///
     /// # Errors
-    /// If nothing passes: the last surface (from 1) that any ray reached, and why rays end there.
+    /// No ray passes. The error is the last surface (from 1) that any ray reached, and why rays end there.
     pub fn extent(&self) -> Result<Extent, Option<(Loss, u32)>> {
         let mut last = None;
         for cells in GRIDS {
@@ -205,11 +207,11 @@ impl<'o> Bundle<'o> {
         Err(last)
     }
 
-    /// Returns the rectangle that contains the passing rays of a grid of `cells` by `cells` rays over `part` of the window, grown by a cell
-    /// on each side.
+    /// Returns the rectangle around the passing rays of a grid of `cells` by `cells` rays over `part` of the window, enlarged by
+    /// a cell on each side.
     ///
     /// # Errors
-    /// If nothing passes: the last surface (from 1) that any ray reached, and why rays end there.
+    /// No ray passes. The error is the last surface (from 1) that any ray reached, and why rays end there.
     pub fn extent_within(&self, part: Extent, cells: usize) -> Result<Extent, Option<(Loss, u32)>> {
         let places: Vec<[f64; 2]> = RayPattern::Grid(cells).places(part).collect();
         let (mut found, mut end): (Option<Extent>, Option<(Loss, u32)>) = (None, None);
@@ -230,9 +232,9 @@ impl<'o> Bundle<'o> {
         found.map(grown).ok_or(end)
     }
 
-    /// Returns the intervals of a line across the window in which rays pass: distances of the first and the last passing ray, mm. A
-    /// first scan uses `probes` + 1 rays; the ends are then found to `accuracy` times the length of the line. A zone that continues to the
-    /// end of the line ends there.
+    /// Returns the intervals of a line across the window in which rays pass. Each is given by the distances (mm) of its first and
+    /// its last passing ray from the start of the line. A first scan uses `probes` + 1 rays; then the ends are found to
+    /// `accuracy` times the length of the line. An interval that reaches the end of the line ends there.
     #[must_use]
     pub fn zones(&self, line: &WindowLine, probes: usize, accuracy: f64) -> Vec<[f64; 2]> {
         let step = line.length_mm / probes as f64;
@@ -271,7 +273,8 @@ impl<'o> Bundle<'o> {
         passing
     }
 
-    /// Returns where the rays through `places` meet an element, mm in the frame of its pose; `None` for rays that end before or at it.
+    /// Returns the points where the rays through `places` meet an element, mm in the frame of its pose; `None` for rays that end
+    /// before it or at it.
     #[must_use]
     pub fn meet(&self, element: usize, places: &[[f64; 2]]) -> Vec<Option<DVec2>> {
         let path = Path::through(self.tracer.surfaces(), self.travel).up_to(|at| at == element);
@@ -291,9 +294,9 @@ impl<'o> Bundle<'o> {
         met
     }
 
-    /// Returns the point of the window whose ray meets an element at `target`, mm in the frame of its pose. Uses Newton's method in two
-    /// dimensions from `guess`, with steps halved while they bring no improvement. Returns `None` if no ray comes within 1e-6 mm of the
-    /// target.
+    /// Returns the point of the window whose ray meets an element at `target` (mm, frame of the element's pose). It uses Newton's
+    /// method in two dimensions from `guess`, with steps halved while they bring no improvement. Returns `None` if no ray comes
+    /// within 1e-6 mm of the target.
     #[must_use]
     pub fn through(&self, element: usize, target: DVec2, guess: [f64; 2]) -> Option<[f64; 2]> {
         let miss = |place: [f64; 2]| Some(self.meet(element, &[place])[0]? - target);

@@ -8,13 +8,14 @@ use spectra_core::math::sin_cos_turns;
 pub enum RayPattern {
     /// Rays in the middles of a square grid with this many cells per side.
     Grid(usize),
-    /// One ray in the middle and 6 k rays on the k-th of this many rings, out to the ellipse that touches the sides.
+    /// One ray in the middle, and 6 k rays on the k-th of this many rings. The last ring is the ellipse that touches the sides of
+    /// the rectangle.
     Hexapolar(usize),
     /// This many rays that fill the rectangle evenly, for any number of them.
     Even(usize),
-    /// This many rays on the line through the middle along the window's first axis, the ends included.
+    /// Rays on the line through the middle along the window's first axis, ends included; this many.
     FanAcross(usize),
-    /// This many rays on the line through the middle along the window's second axis, the ends included.
+    /// Rays on the line through the middle along the window's second axis, ends included; this many.
     FanAlong(usize),
 }
 

@@ -14,9 +14,9 @@ pub enum ObjectPoint {
 }
 
 impl ObjectPoint {
-    /// Returns the point at a field angle on a plane `object_mm` in front of the first vertex (infinity allowed). The angle is in rad;
-    /// positive means that the light runs toward +y. It is measured at the paraxial entrance pupil, or at the first vertex if there is no
-    /// pupil at a finite distance. On a plane it stays below 90 degrees.
+    /// Returns the point at a field angle on the plane `object_mm` in front of the first vertex (infinity allowed). `field_rad`
+    /// is positive if the light runs toward +y. It is measured at the paraxial entrance pupil, or at the first vertex if there is
+    /// no pupil at a finite distance. At a finite distance it must be below 90 degrees.
     #[must_use]
     pub fn on_plane(lens: &Lens, object_mm: f64, field_rad: f64) -> Self {
         let (sin, cos) = (spectra_core::math::sin(field_rad), spectra_core::math::cos(field_rad));
@@ -27,7 +27,8 @@ impl ObjectPoint {
         Self::At(DVec3::new(0.0, -(object_mm + eye_mm) * sin / cos, -object_mm))
     }
 
-    /// Returns the point at a field angle (rad) on a sphere about the paraxial entrance pupil, for fields of any angle.
+    /// Returns the point at a field angle of any size (rad) on a sphere about the paraxial entrance pupil. The sphere meets the
+    /// axis `object_mm` in front of the first vertex (infinity allowed).
     #[must_use]
     pub fn on_sphere(lens: &Lens, object_mm: f64, field_rad: f64) -> Self {
         let direction = DVec3::new(0.0, spectra_core::math::sin(field_rad), spectra_core::math::cos(field_rad));
@@ -38,7 +39,7 @@ impl ObjectPoint {
         Self::At(DVec3::new(0.0, 0.0, eye_mm) - (object_mm + eye_mm) * direction)
     }
 
-    /// Rotates a point of the y-z section about the axis into `section`.
+    /// Rotates a point of the y-z section about the axis of the lens into `section`.
     #[must_use]
     pub fn in_section(self, section: Section) -> Self {
         let turned = |p: DVec3| match section {
@@ -156,7 +157,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// Returns the rectangle grown on each side by this fraction of its size, and at least by `least_mm`.
+    /// Returns the rectangle enlarged on each side by the fraction `part` of its size, and at least by `least_mm`.
     #[must_use]
     pub fn grown(self, part: f64, least_mm: f64) -> Self {
         let by = [0, 1].map(|k| (part * (self.max[k] - self.min[k])).max(least_mm));

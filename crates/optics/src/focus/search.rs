@@ -16,9 +16,9 @@ use spectra_lens::Section;
 pub enum Criterion {
     /// Smallest RMS distance of the rays from their centroid.
     Rms,
-    /// Highest geometrical contrast at one spatial frequency: the mean of lines along x and along y.
+    /// Highest geometrical contrast at one spatial frequency, averaged over lines along x and along y.
     Contrast {
-        /// Line pairs per mm on the image plane.
+        /// Spatial frequency on the image plane, line pairs per mm.
         per_mm: f64,
     },
 }
@@ -74,7 +74,8 @@ impl FocusSearch {
         Beam::trace(optics, point, &self.light, cells.max(FEWEST_CELLS))?.ok_or_else(|| self.none())
     }
 
-    /// Returns how far the best focus lies behind the present image plane of a lens, mm along the plane's z. Nothing is moved.
+    /// Returns how far the best focus lies behind the present image plane of a lens, mm along the plane's z. The lens itself
+    /// stays as it is.
     ///
     /// # Errors
     /// [`FocusError::NoLight`], [`FocusError::Medium`].
@@ -88,8 +89,9 @@ impl FocusSearch {
         z.ok_or_else(|| self.none())
     }
 
-    /// Returns, for a lens with cylinders, how far the plane of sharpest lines along x lies behind that of lines along y, in mm.
-    /// Returns `None` if either plane keeps at least half of the other's contrast, or the criterion is not contrast.
+    /// Returns, for a lens with cylinders, how far (mm) the plane in which lines along x are sharpest lies behind that for lines
+    /// along y. Returns `None` if either plane keeps at least half of the contrast of the other, or the criterion is not
+    /// contrast.
     ///
     /// # Errors
     /// [`FocusError::NoLight`], [`FocusError::Medium`].
@@ -102,8 +104,8 @@ impl FocusSearch {
         Ok(self.beam(optics)?.sections_z_mm(per_mm).map(|[x, y]| y - x))
     }
 
-    /// Moves a lens that is already focused by paraxial optics (see [`Lens::focused_at`]) to its best focus: its groups if they share a
-    /// travel, otherwise the whole lens.
+    /// Moves a lens that is already focused by paraxial optics (see [`Lens::focused_at`]) to its best focus. It moves the lens's
+    /// groups if they share a travel, otherwise the whole lens.
     ///
     /// # Errors
     /// [`FocusError`].
