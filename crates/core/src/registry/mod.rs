@@ -102,7 +102,7 @@ pub struct Context<'a> {
     pub illuminant: Option<&'a SpectralPower>,
     /// View of the frame in front of the lens, for a source; `None` if the scene has no valid lens.
     pub view: Option<&'a FrameView>,
-    /// Point of the image plane where the light of the source lands, in mm, for an imager. `None` if that is not known yet.
+    /// Point of the image plane at which the light of the source lands, in mm, for an imager. `None` if that is not known yet.
     pub landing_mm: Option<[f64; 2]>,
     /// Collector of warnings, if there is one; see [`Context::warn`].
     pub warnings: Option<&'a Warnings>,

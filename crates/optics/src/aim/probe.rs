@@ -47,7 +47,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// The empty rectangle.
+    /// The empty rectangle, which contains no point.
     pub const EMPTY: Self = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
 
     pub fn around(points: &[[f64; 2]]) -> Option<Self> {
