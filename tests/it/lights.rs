@@ -211,7 +211,8 @@ fn a_stopped_frame_is_whole() {
         }
         own.rendering(own.scene(), &light).expect("a picture")
     };
-    for rays in [None, Some(12_000), Some(70_000)] {
+    let all = rendered(&renderer).rays;
+    for rays in [None, Some(all / 10), Some(all / 2)] {
         let runs: Vec<Vec<f64>> = (5..5 + SEEDS)
             .map(|seed| {
                 let rendering = stopped(seed, rays);

@@ -155,7 +155,7 @@ pub(crate) struct Run {
     /// Skip pictures of a sweep or an animation whose files all exist and are not empty. What they were made from is not checked.
     #[arg(long)]
     pub skip_existing: bool,
-    /// Write one JSON object per line to standard output for each event: start, progress, warning, written, done,
+    /// Write one JSON object per line to standard output for each event: start, progress, snapshot, warning, written, done,
     /// error; for several pictures also check, series and end.
     #[arg(long, conflicts_with = "quiet")]
     pub json: bool,
