@@ -87,6 +87,11 @@ impl Folder for Target {
         is_same(&self.folder.join(file), path)
     }
 
+    fn is_newer(&self, file: &str, than: &str) -> bool {
+        let changed = |name: &str| std::fs::metadata(self.folder.join(name)).and_then(|data| data.modified()).ok();
+        changed(file).zip(changed(than)).is_some_and(|(one, other)| one > other)
+    }
+
     fn remove(&self, file: &str) {
         // A file that cannot be removed stays, marked as partial.
         let _ = std::fs::remove_file(self.folder.join(file));

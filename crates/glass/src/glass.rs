@@ -98,8 +98,8 @@ impl Status {
     }
 }
 
-/// Schott's equation for the change of the absolute index n with temperature (Schott TIE-19). It is dn = (n^2 - 1) / (2 n) (D0 t
-/// + D1 t^2 + D2 t^3 + (E0 t + E1 t^2) / (L^2 - L_tk^2)). Here t is the temperature difference from the reference temperature,
+/// Schott's equation for the change of the absolute index n with temperature (Schott TIE-19). It is
+/// dn = (n^2 - 1) / (2 n) (D0 t + D1 t^2 + D2 t^3 + (E0 t + E1 t^2) / (L^2 - L_tk^2)). Here t is the temperature difference from the reference temperature,
 /// and L the wavelength.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thermal {

@@ -9,7 +9,7 @@ use crate::landing::Landing;
 use crate::light::{EstimatorSums, Light};
 use crate::memory::memory_needed;
 use crate::noise::{ends_round, next_round};
-use crate::passes::{FIRST_PARTS, next_pass};
+use crate::passes::{first_units, next_pass};
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::rendering::{GhostNoise, Rendering};
 use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, PILOT_RAYS};
@@ -207,7 +207,13 @@ impl Renderer {
     fn expect(&self, light: &Light, samples: u64, control: &Control) {
         let rays = self.estimators().zip(&light.parts).map(|(e, part)| {
             let tiles = part.done.active(e.tiles());
-            e.rays(&(part.done.complete()..samples.max(part.done.end())), &tiles)
+            let all = e.rays(&(part.done.complete()..samples.max(part.done.end())), &tiles);
+            // Units of an open span that are done have about equally many rays.
+            let done = part.done.open().map_or(0.0, |(span, units)| {
+                let done = units.ranges().map(|range| range.end - range.start).sum::<u64>();
+                e.rays(span, &tiles) as f64 * done as f64 / e.units(span, &tiles).max(1) as f64
+            });
+            all.saturating_sub(done as u64)
         });
         control.expect(control.rays() + rays.sum::<u64>());
     }
@@ -254,12 +260,21 @@ impl Renderer {
             if let Err(error) = self.span(at, &span, light, workers, control) {
                 failure.get_or_insert(error);
             }
-            if control.should_stop() {
+            // The last unit may be complete when the work is told to stop.
+            if control.should_stop() && !self.has_first_units(at, light) {
                 return failure.map_or(Ok(()), Err);
             }
         }
         light.covers_frame = true;
         failure.map_or(Ok(()), Err)
+    }
+
+    /// Returns whether an estimator has done its units of the first pass.
+    fn has_first_units(&self, at: usize, light: &Light) -> bool {
+        let (Some(estimator), done) = (self.estimators().nth(at), &light.parts[at].done) else { return true };
+        let Some((samples, units)) = done.open() else { return done.complete() > 0 };
+        let tiles = done.active(estimator.tiles());
+        units.covers(first_units(estimator, estimator.units(samples, &tiles)))
     }
 
     /// Continues until each estimator has `samples` samples, in passes over the whole frame.
@@ -339,9 +354,7 @@ impl Renderer {
         let tiles = part.done.active(estimator.tiles());
         let units = estimator.units(samples, &tiles);
         let is_first_pass = !light.covers_frame;
-        // Beside a backward sample, lights and their ghosts take long for theirs.
-        let is_short = is_first_pass && self.has_lights && estimator.tiles() == 1;
-        let end = if is_short { units.div_ceil(FIRST_PARTS) } else { units };
+        let end = if is_first_pass { first_units(estimator, units) } else { units };
         let known = part.done.open().map(|(_, units)| units.clone()).unwrap_or_default();
         // A thread that takes several units at a time gets neighbors, whose light comes from nearby places.
         let run = (units / UNITS_A_RUN).clamp(1, LONGEST_RUN);

@@ -87,6 +87,11 @@ pub trait Folder: Sink {
         false
     }
 
+    /// Returns whether both files exist and the first was changed after the second.
+    fn is_newer(&self, _file: &str, _than: &str) -> bool {
+        false
+    }
+
     /// Removes a file if it exists.
     fn remove(&self, _file: &str) {}
 

@@ -29,12 +29,15 @@ impl PictureFiles {
     }
 
     /// Returns whether a file of these names exists that may belong to a finished picture, and its name. If `replaces_partial`, a picture
-    /// whose report calls it partial does not count.
+    /// whose report calls it partial does not count, unless one of the files is newer than the report.
     pub fn finished(&self, folder: &dyn Folder, replaces_partial: bool) -> Option<String> {
         /// Largest report that is read, bytes; a larger file is not one of ours.
         const LARGEST: u64 = 64 << 20;
         let there = self.names().into_iter().find(|name| folder.has(name))?;
-        let report = self.report.as_ref().filter(|_| replaces_partial).and_then(|name| folder.read(name, LARGEST));
+        // A picture's report is its last file.
+        let is_last = |report: &&String| !self.names().iter().any(|name| folder.is_newer(name, report));
+        let report = self.report.as_ref().filter(|_| replaces_partial).filter(is_last);
+        let report = report.and_then(|name| folder.read(name, LARGEST));
         let report: serde_json::Value =
             report.and_then(|bytes| serde_json::from_slice(&bytes).ok()).unwrap_or_default();
         (report["partial"] != true).then_some(there)
@@ -85,7 +88,12 @@ impl DevelopedOnce {
         traced: (&Rendering, f64),
         host: &dyn Host,
     ) -> Result<Self, SessionError> {
-        let files = PictureFiles::of(&job.names, session.scene(), &session.member())?;
+        let whole = PictureFiles::of(&job.names, session.scene(), &session.member())?;
+        let is_beside = traced.0.partial && whole.finished(host.folder(), true).is_some();
+        let files = match is_beside {
+            true => PictureFiles::of(&job.names.of_partial(), session.scene(), &session.member())?,
+            false => whole,
+        };
         let memory = Memory::default();
         let times = files.write((job, host, session.scene()), traced, &memory, None)?;
         Ok(Self { files, contents: memory.into_files(), times })

@@ -76,7 +76,10 @@ pub(crate) fn picture(
     let report = Report { job, scene, rendering: &rendering, times: &times, seconds, threads: host.threads() };
     host.hear(Event::Done { report: &report, stopped });
     match failure {
-        Some(text) => Err(SessionError::Failed(text)),
+        Some(text) => {
+            let text = format!("{text}; the files hold the light traced so far, without that ray");
+            Err(SessionError::Failed(text))
+        }
         None if stopped => Ok((JobEnd::Stopped, times)),
         None => Ok((JobEnd::Whole, times)),
     }
@@ -104,7 +107,8 @@ fn traced(
         host.hear(Event::FirstPass);
         // The first pass is developed at once: to know how long that takes, and to have a picture if there is no time for more.
         let begun = host.now_s();
-        let rendering = tracing.so_far()?;
+        let mut rendering = tracing.so_far()?;
+        rendering.warnings = tracing.session().rendering_warnings(&rendering);
         let developed = DevelopedOnce::new(job, tracing.session(), (&rendering, tracing.seconds()), host)?;
         host.hear(Event::DevelopedOnce { seconds: host.now_s() - begun });
         if host.is_stopped() {

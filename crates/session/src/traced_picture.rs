@@ -68,14 +68,19 @@ impl<'a> Tracing<'a> {
 
     /// Traces the first pass over the frame. Returns whether it is complete.
     pub fn first_pass(&mut self) -> Result<bool, SessionError> {
-        self.timed(|session, host, control| session.first_pass(host.workers(), control))?;
-        Ok(self.session.covers_frame())
+        loop {
+            self.timed(|session, host, control| session.first_pass(host.workers(), control))?;
+            // There is nothing to show in a pause yet.
+            if self.session.covers_frame() || !self.control.resume() || self.control.is_stopped() {
+                return Ok(self.session.covers_frame());
+            }
+        }
     }
 
     /// Traces all samples that the scene states, or until the control asks to stop. At each pause, `snapshot` takes the light so far.
     pub fn all(&mut self, mut snapshot: impl FnMut(&mut Session, f64)) -> Result<(), SessionError> {
         let samples = u64::from(self.session.scene().render.samples);
-        while self.failure.is_none() {
+        while self.failure.is_none() || !self.session.covers_frame() {
             self.timed(|session, host, control| session.advance(samples, host.workers(), control))?;
             if !self.control.resume() || self.control.is_stopped() {
                 break;
@@ -97,7 +102,7 @@ impl<'a> Tracing<'a> {
         self.seconds += self.host.now_s() - begun;
         match traced {
             Err(SessionError::Failed(text)) if self.session.has_light() => {
-                self.failure = Some(format!("{text}; the files hold the light traced so far, without that ray"));
+                self.failure.get_or_insert(text);
                 Ok(())
             }
             traced => traced,

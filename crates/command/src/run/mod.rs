@@ -89,6 +89,10 @@ pub(crate) struct CliHost {
     snapshot_every: Option<Duration>,
     /// When tracing began or the last snapshot was written.
     snapshot: Mutex<Instant>,
+    /// Time that development takes, once it is known.
+    development: Mutex<Duration>,
+    /// Whether several pictures are made.
+    is_series: AtomicBool,
     progress: Mutex<Progress>,
     /// Control of the current picture.
     control: Mutex<Arc<Control>>,
@@ -117,6 +121,8 @@ impl CliHost {
             watch: Watch::new(started, None, speaks.json),
             snapshot_every: None,
             snapshot: Mutex::new(started),
+            development: Mutex::default(),
+            is_series: AtomicBool::new(false),
             progress: Mutex::new(Progress::new(speaks.json, speaks.quiet, deadline)),
             control: Mutex::default(),
             is_tracing: AtomicBool::new(false),
@@ -137,6 +143,7 @@ impl CliHost {
     /// Moves the end of tracing forward by the time that development takes, and a quarter for safety.
     fn leave_time_for(&self, development_s: f64) {
         let before = Duration::try_from_secs_f64(1.25 * development_s + LEEWAY_S).unwrap_or_default();
+        *self.development.lock().unwrap_or_else(PoisonError::into_inner) = before;
         let mut deadline = self.deadline.lock().unwrap_or_else(PoisonError::into_inner);
         *deadline = deadline.map(|deadline| deadline.checked_sub(before).unwrap_or(self.started));
     }
@@ -146,9 +153,13 @@ impl CliHost {
         *self.snapshot.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
     }
 
+    /// Whether a snapshot is due and there is time to develop it before tracing ends.
     fn is_snapshot_due(&self) -> bool {
         let begun = *self.snapshot.lock().unwrap_or_else(PoisonError::into_inner);
-        self.snapshot_every.is_some_and(|every| begun.elapsed() >= every)
+        let development = *self.development.lock().unwrap_or_else(PoisonError::into_inner);
+        let deadline = *self.deadline.lock().unwrap_or_else(PoisonError::into_inner);
+        let has_time = deadline.is_none_or(|deadline| Instant::now() + development < deadline);
+        has_time && self.snapshot_every.is_some_and(|every| begun.elapsed() >= every)
     }
 
     fn tick(&self) {
@@ -245,6 +256,10 @@ impl Host for CliHost {
         match event {
             Event::Start(_) => {
                 self.watch.prepared();
+                // A series says itself that no picture was finished, and snapshots may be written from now on.
+                if self.is_series.load(Relaxed) {
+                    self.watch.done();
+                }
                 self.begin_snapshot();
                 self.is_tracing.store(true, Relaxed);
             }
@@ -254,7 +269,12 @@ impl Host for CliHost {
                 self.leave_time_for(seconds);
             }
             Event::Snapshot(_) => self.begin_snapshot(),
-            Event::Picture(Some(place)) if place.index > 0 => self.watch.done(),
+            Event::Picture(Some(place)) => {
+                self.is_series.store(true, Relaxed);
+                if place.index > 0 {
+                    self.watch.done();
+                }
+            }
             Event::Traced => {
                 self.watch.done();
                 self.is_tracing.store(false, Relaxed);

@@ -85,9 +85,9 @@ pub trait Surface: Send + Sync + std::fmt::Debug {
     /// Curvature at the vertex along x and y, 1/mm, for paraxial optics.
     fn vertex_curvature_per_mm(&self) -> (f64, f64);
 
-    /// Power for paraxial optics, 1/mm, in the x-z and in the y-z section, between media of these refractive indices: n' u' = n u
-    /// - power h. For a mirror `n_after` is `-n_before`, as usual in lens design. The default follows from Snell's law and the
-    /// curvature at the vertex.
+    /// Power for paraxial optics, 1/mm, in the x-z and in the y-z section, between media of these refractive indices:
+    /// n' u' = n u - power h. For a mirror `n_after` is `-n_before`, as usual in lens design. The default follows from Snell's law
+    /// and the curvature at the vertex.
     fn paraxial_power_per_mm(&self, n_before: f64, n_after: f64) -> (f64, f64) {
         let (x, y) = self.vertex_curvature_per_mm();
         ((n_after - n_before) * x, (n_after - n_before) * y)

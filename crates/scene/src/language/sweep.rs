@@ -251,7 +251,7 @@ mod tests {
             ("{a: []}", "a swept path must have a list of values"),
             ("{a..b: [1]}", "t.yaml:1:9: `a..b` is not a path: a key is empty"),
             ("{animation.frames: [1]}", "`animation` cannot change from picture to picture"),
-            ("{a: {b: [1, 2]}}", "joined by dots: `sweep: {a.b: ...}`"),
+            ("{a: {b: [1, 2]}}", "join the keys of a path by dots: `sweep: {a.b: ...}`"),
             ("{a: {from: 1, to: 2}}", "missing key `steps`"),
             ("{a: {from: 1, to: 2, stops: 3}}", "unknown key `stops` (did you mean `steps`?)"),
             (

@@ -60,7 +60,7 @@ fn the_same_picture_gives_the_same_bytes() {
     assert_eq!(first[date + 8..][..11], *b"string\0\0\0\0\0", "no time of day");
     // The library reads back what it wrote.
     let read = OpenImageIo.read("exr", &file_of(&first), LIMITS);
-    assert!(read.is_err_and(|cause| cause.contains("`X`")), "X, Y and Z are no red, green and blue");
+    assert!(read.is_err_and(|cause| cause.to_string().contains("`X`")), "X, Y and Z are no red, green and blue");
 }
 
 #[test]
