@@ -262,7 +262,7 @@ mod tests {
             ("{a: {from: 1, to: 2, steps: 3, spacing: log}}", "unknown value `log` for `spacing`"),
             ("{a: {from: 1 m, to: 2 s, steps: 3}}", "`2 s` and `1 m` are of different kinds"),
             (&many, "the sweep has 1020 pictures, but at most 1000 can be made"),
-            ("[3]", "t.yaml:1:9: each entry of such a sweep is a map"),
+            ("[3]", "t.yaml:1:9: each entry of such a sweep must be a map"),
             ("[{sweep: 1}]", "`sweep` cannot change from picture to picture"),
         ] {
             let error = settings(&format!("sweep: {sweep}\n")).expect_err(said);
