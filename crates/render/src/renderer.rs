@@ -243,6 +243,12 @@ impl Renderer {
         &self.halves[0]
     }
 
+    /// Returns whether the light has all samples that the scene states, or is as clean as the scene asks for.
+    #[must_use]
+    pub fn is_complete(&self, light: &Light) -> bool {
+        light.samples() >= u64::from(self.scene.render.samples) || self.is_clean(light)
+    }
+
     /// Whether the requested noise is reached everywhere.
     fn is_clean(&self, light: &Light) -> bool {
         let ended = |(e, part): (&dyn Estimator, &EstimatorSums)| part.done.ended().len() == e.tiles();
@@ -443,7 +449,7 @@ impl Renderer {
             detected: light.detected(),
             estimators: self.kinds().iter().map(|estimator| estimator.name()).collect(),
             samples: light.samples(),
-            partial: light.samples() < u64::from(scene.render.samples) && !self.is_clean(light),
+            partial: !self.is_complete(light),
             noise: self.noise(light),
             ledger: self.ledger.clone(),
             ghost_noise: self.ghost_noise(light.samples()),

@@ -212,8 +212,7 @@ fn meter(job: &Develop<'_>, plate: &PictureJob, host: &dyn Host) -> Option<FilmT
             TracedPicture::of(&mut session, host, IncompletePolicy::IsLeftOut).ok()??.rendering
         }
     };
-    let exposure = (!rendering.partial).then_some(rendering.exposure)?;
-    session.scene().film_times(&exposure).into_iter().find(|time| time.is_metered)
+    session.scene().film_times(&rendering.exposure).into_iter().find(|time| time.is_metered)
 }
 
 /// Develops a picture, with the exposure metered on another one if `metered` is given.

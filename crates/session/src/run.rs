@@ -47,13 +47,12 @@ pub(crate) fn picture(
         None => traced(job, &mut session, unfinished, &mut snapshots, host)?,
     };
     let Some((TracedPicture { rendering, seconds, failure }, developed)) = traced else {
-        host.hear(Event::Note("stopped before the first pass over the frame was complete: nothing was written"));
+        if unfinished == IncompletePolicy::IsKept {
+            host.hear(Event::Note("stopped before the first pass over the frame was complete: nothing was written"));
+        }
         return Ok((JobEnd::Stopped, Vec::new()));
     };
     let stopped = rendering.partial && host.is_interrupted();
-    if rendering.partial && unfinished == IncompletePolicy::IsLeftOut {
-        return failure.map_or(Ok((JobEnd::Stopped, Vec::new())), |text| Err(SessionError::Failed(text)));
-    }
     let scene = session.scene();
     let files = match rendering.partial {
         true => partial_files(job, scene, &member, whole, host)?,

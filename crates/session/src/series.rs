@@ -231,13 +231,7 @@ impl SeriesRun<'_> {
         tracing.all(|session, seconds| snapshots.take(session, seconds))?;
         let traced = tracing.end(IncompletePolicy::IsLeftOut)?;
         snapshots.remove(&[]);
-        let Some(TracedPicture { rendering, seconds, failure }) = traced else { return Ok(false) };
-        if let Some(text) = failure {
-            return Err(SessionError::Failed(text));
-        }
-        if rendering.partial {
-            return Ok(false);
-        }
+        let Some(TracedPicture { rendering, seconds, .. }) = traced else { return Ok(false) };
         let scene = session.into_scene();
         for warning in exposure_warnings(&scene, &rendering.exposure) {
             // One warning for each place in the scene file, not one in each of a thousand frames.

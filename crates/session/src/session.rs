@@ -183,6 +183,11 @@ impl Session {
         self.ready.as_ref().is_some_and(|(_, light)| light.covers_frame())
     }
 
+    /// Returns whether the light has all samples that the scene states, or is as clean as the scene asks for.
+    pub(crate) fn is_complete(&self) -> bool {
+        self.ready.as_ref().is_some_and(|(renderer, light)| renderer.is_complete(light))
+    }
+
     /// Returns the light so far, as the current scene shows it.
     ///
     /// # Errors

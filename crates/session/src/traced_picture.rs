@@ -36,8 +36,7 @@ pub(crate) struct TracedPicture {
 }
 
 impl TracedPicture {
-    /// Traces all samples that the scene states, or until the host asks to stop. `None` if it did before the first pass over the frame was
-    /// complete.
+    /// Traces all samples that the scene states, or until the host asks to stop. `None` if there is no picture to write then.
     pub(crate) fn of(
         session: &mut Session,
         host: &dyn Host,
@@ -138,18 +137,15 @@ impl<'a> Tracing<'a> {
         self.session
     }
 
-    /// Ends tracing and returns the picture, or `None` if it was stopped before the first pass over the frame was complete. A picture that
-    /// was stopped and will be left out gets no remarks.
+    /// Ends tracing and returns the picture. `None` if it was stopped before the first pass over the frame was complete, or if it is
+    /// incomplete and will be left out.
     pub fn end(mut self, unfinished: IncompletePolicy) -> Result<Option<TracedPicture>, SessionError> {
-        if !self.session.covers_frame() {
+        let is_partial = self.failure.is_some() || !self.session.is_complete();
+        if !self.session.covers_frame() || is_partial && unfinished == IncompletePolicy::IsLeftOut {
             self.host.hear(Event::Traced);
             return self.failure.map_or(Ok(None), |text| Err(SessionError::Failed(text)));
         }
         let rendering = self.so_far()?;
-        if rendering.partial && unfinished == IncompletePolicy::IsLeftOut {
-            self.host.hear(Event::Traced);
-            return Ok(Some(TracedPicture { rendering, seconds: self.seconds, failure: self.failure }));
-        }
         Ok(Some(self.end_with(rendering)))
     }
 }
