@@ -97,7 +97,7 @@ fn light_is_saved_and_taken_up() {
         assert_eq!(bits(&mut second), bits(&mut whole));
         // A surface number that the lens does not have is rejected before memory is allocated for all surfaces up to it.
         file[last] ^= 1;
-        let magic = b"spectra light 6\n";
+        let magic = b"spectra light 7\n";
         let state = file.windows(16).position(|w| w == magic).expect("light") + 16 + 8;
         if file[state - 8..state] != [0; 8] {
             file[state + 3] = 0xf0;

@@ -96,7 +96,7 @@ pub fn ghosts(
     if settings.seeds < 2 {
         return Err(BenchError::Settings("seeds: give at least 2, because errors are judged by their scatter"));
     }
-    let scene = spectra_scene::load(path, overrides)?;
+    let scene = crate::scene::load(path, overrides)?;
     let mut paths = 0;
     let mut judged = None;
     let mut one = |rays: GhostRays, words: &str| -> Result<GhostNoise, BenchError> {

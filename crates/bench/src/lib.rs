@@ -24,6 +24,7 @@ mod noise;
 mod picture;
 mod report;
 mod runner;
+mod scene;
 mod statistics;
 mod strategy;
 mod table;

@@ -80,11 +80,11 @@ pub fn noise(
         return Err(BenchError::Settings("seeds: give at least 2, because errors are judged by their scatter"));
     }
     // Load the scene as it is first, to report errors that do not depend on the direction.
-    spectra_scene::load(path, overrides)?;
+    crate::scene::load(path, overrides)?;
     let mut rows = Vec::new();
     for direction in &settings.directions {
         let set = [overrides, &[format!("render.direction={direction}")]].concat();
-        let Ok(scene) = spectra_scene::load(path, &set) else { continue };
+        let Ok(scene) = crate::scene::load(path, &set) else { continue };
         tell(&format!("{}: {direction}", scene.name));
         rows.push(row(scene, direction, settings)?);
     }

@@ -56,7 +56,7 @@ pub fn bench(
     tell: &mut dyn FnMut(&str),
 ) -> Result<Report, BenchError> {
     let samples = checked(settings)?;
-    let scene = spectra_scene::load(path, overrides)?;
+    let scene = crate::scene::load(path, overrides)?;
     let mut run = Run::prepare(&scene, path, overrides, settings, samples, tell)?;
     let mut series = Vec::new();
     let (own, other) = match scene.render.numbers {
@@ -222,7 +222,7 @@ impl<'a> Run<'a> {
             }
             let (strategy, replacement) = resolve(strategy, &said, scene, &system);
             let overrides: Vec<String> = overrides.iter().cloned().chain(replacement).collect();
-            let mut scene = match spectra_scene::load(path, &overrides) {
+            let mut scene = match crate::scene::load(path, &overrides) {
                 Ok(scene) => scene,
                 // Report it and continue: the user did not name this strategy.
                 Err(faults) if settings.strategies.is_empty() => {

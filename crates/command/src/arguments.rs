@@ -135,8 +135,9 @@ pub(crate) struct Run {
     #[arg(short, long, value_name = "N", value_parser = samples)]
     pub samples: Option<u32>,
     /// Stop when the picture is clean: relative noise of a pixel (1%), of its luminance or of the noisiest film layer,
-    /// overriding the scene's. --samples is then the largest number of samples that a pixel gets.
-    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    /// overriding the scene's; `auto` is a third of the film's grain, and 1 % without grain. --samples is then the largest number
+    /// of samples that a pixel gets.
+    #[arg(long, value_name = "NOISE", value_parser = percent)]
     pub noise: Option<String>,
     /// Stop at 5 % noise or 256 samples per pixel (`preview`), or at 1 % or 8192 (`final`), whichever comes first; --noise and
     /// --samples override these.

@@ -24,6 +24,7 @@ pub mod batch;
 pub mod cover;
 pub mod frame;
 pub mod frame_view;
+pub mod grain_noise;
 pub mod loss;
 pub mod names;
 pub mod numbers;

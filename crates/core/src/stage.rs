@@ -18,6 +18,7 @@
 use crate::RayBatch;
 use crate::cover::CoverStack;
 use crate::frame::{DisplayPicture, ExposureFrame, ExtraRequest, FinishedPicture, FrameSize, ImageState, RawFrame};
+pub use crate::grain_noise::GrainNoise;
 use crate::isa::Isa;
 use crate::params::{Fault, Faults, Warning};
 use crate::spectral::{Channel, SpectralPower, SystemResponse};
@@ -456,6 +457,13 @@ pub trait Film: Any + Send + Sync {
     /// Returns a sentence that warns if it is unknown whether an exposure of `time_s` seconds counts in full (reciprocity
     /// failure); `None` if it is known.
     fn long_exposure_warning(&self, _time_s: f64) -> Option<String> {
+        None
+    }
+
+    /// Returns the grain of each channel of the picture, so that no more rays are traced than the grain shows. `metered` is a frame of
+    /// which only the channels beyond [`Film::picture_channels`] are known; the others have no values. Exposures are as for
+    /// [`Film::develop`]. `None` if the film has no grain.
+    fn grain_noise(&self, _metered: &ExposureFrame) -> Option<Vec<GrainNoise>> {
         None
     }
 

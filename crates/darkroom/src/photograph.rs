@@ -222,7 +222,7 @@ impl DevelopSettings {
             None => made.push(("film.exposure", "metered".to_owned())),
         }
         if has_lens {
-            made.push(("render.noise", "1 %".to_owned()));
+            made.push(("render.noise", "auto".to_owned()));
         }
         // An `.exr` name asks for the picture on film. The light before the film is written only if `output` is set.
         let is_exr = Path::new(&plate.output).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));

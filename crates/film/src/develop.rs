@@ -10,8 +10,11 @@ use crate::grain::{ColorGrain, FOG, Grain, GrainError, usual_half_power};
 use crate::halation::{Halation, HalationBase};
 use crate::raster::Raster;
 use crate::scatter::{Mtf, Scatter};
+use spectra_core::grain_noise::GrainNoise;
+use spectra_core::math::log10;
 use spectra_core::numbers::seed_of_frame;
 use spectra_core::params::Fault;
+use std::f64::consts::LOG10_E;
 
 /// Granularity of a film's layers.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +26,14 @@ pub enum Granularity {
 }
 
 impl Granularity {
+    /// Returns the amount at which a layer has no grain, if `clear` is its least amount.
+    fn base(&self, clear: f64) -> f64 {
+        match self {
+            Self::Silver(_) => clear,
+            Self::Dyes(_) => clear - FOG,
+        }
+    }
+
     /// Builds the grain of layer number `layer` of the film, which is number `first_layer + layer` among all layers of the
     /// picture. `seed` selects the grains.
     ///
@@ -118,13 +129,33 @@ impl Effects {
         }
     }
 
+    /// Returns the grain of layer number `layer` on pixels with the side `pitch_mm`, as an unevenness of the exposure; `None` if there is
+    /// none. `factor` converts exposures to those that take effect, as in [`develop`].
+    #[must_use]
+    pub fn grain_noise(&self, layer: usize, emulsion: &Emulsion, factor: f64, pitch_mm: f64) -> Option<GrainNoise> {
+        /// Log10 of the exposures (lx s) that take effect, and the step between samples: a curve is nearly straight over a sixth of a stop.
+        const SPAN: [f64; 2] = [-6.0, 6.0];
+        const STEP: f64 = 0.05;
+        /// Largest fraction that is told: no noise is visible where the curve is flat.
+        const MOST: f64 = 1e3;
+        let granularity = self.granularity.as_ref()?;
+        let grain = granularity.grain(layer, self.first_layer, self.seed).ok()?;
+        let base = granularity.base(emulsion.range(layer).0);
+        let fraction = |step: usize| {
+            let log10_exposure = SPAN[0] + step as f64 * STEP;
+            let deviation = grain.deviation(emulsion.amount(layer, log10_exposure) - base, pitch_mm);
+            // The exposure changes by the factor e where its log10 changes by log10(e).
+            let fraction = deviation / (emulsion.gradient(layer, log10_exposure).abs() * LOG10_E);
+            fraction.min(MOST)
+        };
+        let count = ((SPAN[1] - SPAN[0]) / STEP).round() as usize;
+        Some(GrainNoise::new(SPAN[0] - log10(factor), STEP, (0..=count).map(fraction).collect()))
+    }
+
     /// Adds grain to the amounts of a layer. `clear` is its least amount, at which there is no grain except fog.
     fn roughen(&self, layer: usize, plane: &mut [f32], clear: f64, raster: &Raster) -> Result<(), Fault> {
         let Some(granularity) = &self.granularity else { return Ok(()) };
-        let base = match granularity {
-            Granularity::Silver(_) => clear,
-            Granularity::Dyes(_) => clear - FOG,
-        } as f32;
+        let base = granularity.base(clear) as f32;
         plane.iter_mut().for_each(|d| *d -= base);
         let grain = granularity.grain(layer, self.first_layer, self.seed);
         grain.map_err(|e| e.to_string())?.apply(plane, raster);

@@ -201,6 +201,18 @@ impl Emulsion {
         (0..self.layers()).map(|i| self.amount(i, log10_exposure)).collect()
     }
 
+    /// Returns how much the amount in a layer changes with log10 of its own exposure, where the subject is neutral with this log10 exposure
+    /// (lx s) and the other layers keep theirs: the slope of the curve, steepened by their inhibition.
+    #[must_use]
+    pub fn gradient(&self, layer: usize, log10_exposure: f64) -> f64 {
+        const STEP: f64 = 0.01;
+        let slope =
+            |j: usize| (self.amount(j, log10_exposure + STEP) - self.amount(j, log10_exposure - STEP)) / (2.0 * STEP);
+        let row = self.inhibition.get(layer).into_iter().flatten().enumerate();
+        let relief: f64 = row.filter(|(j, _)| *j != layer).map(|(j, k)| k * slope(j)).sum();
+        slope(layer) * (1.0 + relief)
+    }
+
     /// Returns the smallest and largest amount in a layer.
     #[must_use]
     pub fn range(&self, layer: usize) -> (f64, f64) {

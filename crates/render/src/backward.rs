@@ -11,6 +11,7 @@
 //! ray to the rim along. That ray stands for 16 and weighs little, so it hardly matters whether it ends. Neighboring pixels bring it with
 //! different samples. Rays to the rim have streams of their own and are in no count of rays.
 
+use crate::check_pixels::{CheckPixels, PIXELS_A_CHECK};
 use crate::error::RenderError;
 use crate::estimator::{Estimator, Scratch, UnitResult};
 use crate::finite_check::FiniteCheck;
@@ -46,6 +47,7 @@ const RIM_STREAM: u64 = 1 << 40;
 const SHIFT_STREAM: u64 = 1 << 41;
 
 /// Estimator that traces rays from the imager to the source.
+#[derive(Clone)]
 pub(crate) struct Backward {
     pipeline: Arc<Pipeline>,
     rear: Arc<RearPupil>,
@@ -54,6 +56,8 @@ pub(crate) struct Backward {
     shifts: Numbers,
     /// Scale of the sums: contributions are multiplied by it before they are rounded to integers.
     scale: f64,
+    /// The check pixels, if only these are traced; the sums are then numbered by them.
+    checks: Option<CheckPixels>,
 }
 
 impl Backward {
@@ -79,7 +83,7 @@ impl Backward {
         });
         let pixels = scene.imager.size().pixels() as u64;
         let (rear, seed) = (Arc::new(rear.ok_or_else(|| RenderError::no_pupil(workers))?), pipeline.seed);
-        let mut own = Self { rear, numbers, shifts, scale: 1.0, pipeline };
+        let mut own = Self { rear, numbers, shifts, scale: 1.0, checks: None, pipeline };
         own.scale = pilot::scale(&own.pipeline, |state, batch, mut look| {
             own.steps(state, &spread(pixels, batch), AimPart::Whole, &mut look);
         })?;
@@ -90,7 +94,7 @@ impl Backward {
     fn with_seed(&self, seed: u64) -> Self {
         let numbers = self.pipeline.numbers(seed);
         let (pipeline, rear) = (self.pipeline.clone(), self.rear.clone());
-        Self { shifts: numbers.as_random(), pipeline, rear, numbers, scale: self.scale }
+        Self { shifts: numbers.as_random(), pipeline, rear, numbers, scale: self.scale, checks: self.checks }
     }
 
     /// Returns a copy that traces what the meters see, or `None` if they see none of the source's light. Its scale is 1, since it adds to
@@ -98,7 +102,7 @@ impl Backward {
     fn of_meters(&self) -> Option<Self> {
         let pipeline = Arc::new(self.pipeline.of_meters()?);
         let (numbers, shifts) = (self.numbers.clone(), self.shifts.clone());
-        Some(Self { pipeline, rear: self.rear.clone(), numbers, shifts, scale: 1.0 })
+        Some(Self { pipeline, rear: self.rear.clone(), numbers, shifts, scale: 1.0, checks: None })
     }
 
     /// Estimates the mean of the frame from [`PILOT_RAYS`] rays: W/m2, summed over the channels. The result is the same for any seed of the
@@ -210,10 +214,23 @@ impl Backward {
             result = result.and(self.add_rim(state, pixels, samples, &mut local));
         }
         for (pixel, values) in pixels.iter().zip(local.chunks_exact(channels)) {
-            let cell = *pixel as usize * channels;
-            values.iter().enumerate().for_each(|(channel, value)| sums.add(cell + channel, *value));
+            if let Some(place) = self.place(*pixel) {
+                let cell = place * channels;
+                values.iter().enumerate().for_each(|(channel, value)| sums.add(cell + channel, *value));
+            }
         }
         result
+    }
+
+    /// Returns the number of a pixel within the sums; `None` if it is not traced.
+    fn place(&self, pixel: u32) -> Option<usize> {
+        self.checks.map_or(Some(pixel as usize), |checks| checks.group_of(pixel as usize))
+    }
+
+    /// Returns the pixels of a tile that are traced.
+    fn pixels_of(&self, tile: u32) -> impl Iterator<Item = u32> {
+        let tile = self.tiling().tile(tile);
+        (0..tile.len()).map(move |at| tile.pixel(at)).filter(|pixel| self.place(*pixel).is_some())
     }
 }
 
@@ -315,14 +332,16 @@ impl Backward {
         self.pipeline.scene.imager.size()
     }
 
-    /// Returns the number of tiles in a unit: one, or more in a span of few samples, so that a unit has enough rays.
-    fn tiles_a_unit(samples: &Range<u64>) -> usize {
-        (SAMPLES_A_UNIT / (samples.end - samples.start).clamp(1, SAMPLES_A_UNIT)) as usize
+    /// Returns the number of tiles in a unit: one, or more if few of their pixels are traced or the span has few samples, so that a unit
+    /// has enough rays.
+    fn tiles_a_unit(&self, samples: &Range<u64>) -> usize {
+        let pixels = if self.checks.is_some() { PIXELS_A_CHECK } else { 1 };
+        pixels * (SAMPLES_A_UNIT / (samples.end - samples.start).clamp(1, SAMPLES_A_UNIT)) as usize
     }
 
     /// Returns the tiles and the samples of a unit.
-    fn piece<'a>(samples: &Range<u64>, tiles: &'a [u32], unit: u64) -> (&'a [u32], Range<u64>) {
-        let each = Self::tiles_a_unit(samples);
+    fn piece<'a>(&self, samples: &Range<u64>, tiles: &'a [u32], unit: u64) -> (&'a [u32], Range<u64>) {
+        let each = self.tiles_a_unit(samples);
         let many = tiles.len().div_ceil(each) as u64;
         let first = samples.start + unit / many * SAMPLES_A_UNIT;
         let tile = (unit % many) as usize * each;
@@ -331,6 +350,25 @@ impl Backward {
 
     fn tiling(&self) -> Tiles {
         Tiles::of(self.size())
+    }
+
+    /// The check pixels of the picture with this seed.
+    fn check_pixels(&self, seed: u64) -> CheckPixels {
+        CheckPixels::of(self.size(), seed)
+    }
+
+    /// Returns how many samples each tile has.
+    fn samples_of_tiles(&self, done: &Done) -> Vec<u64> {
+        let tiles = self.tiles();
+        let mut of_tile: Vec<u64> = (0..tiles as u32).map(|tile| done.samples_of(tile)).collect();
+        if let Some((samples, units)) = done.open() {
+            let active = done.active(tiles);
+            for unit in units.ranges().flatten() {
+                let (tiles, piece) = self.piece(samples, &active, unit);
+                tiles.iter().for_each(|tile| of_tile[*tile as usize] += piece.end - piece.start);
+            }
+        }
+        of_tile
     }
 }
 
@@ -352,19 +390,24 @@ impl Estimator for Backward {
     }
 
     fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
-        Box::new(Self { pipeline: Arc::new(self.pipeline.of_seed(picture)), ..self.with_seed(seed) })
+        let checks = self.checks.map(|_| self.check_pixels(picture));
+        Box::new(Self { pipeline: Arc::new(self.pipeline.of_seed(picture)), checks, ..self.with_seed(seed) })
+    }
+
+    fn in_check_pixels(&self) -> Option<Box<dyn Estimator>> {
+        Some(Box::new(Self { checks: Some(self.check_pixels(self.pipeline.seed)), ..self.clone() }))
     }
 
     fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
-        let groups = tiles.len().div_ceil(Self::tiles_a_unit(samples)) as u64;
+        let groups = tiles.len().div_ceil(self.tiles_a_unit(samples)) as u64;
         groups * (samples.end - samples.start).div_ceil(SAMPLES_A_UNIT)
     }
 
     fn rays(&self, samples: &Range<u64>, tiles: &[u32]) -> u64 {
         let pixels = if tiles.len() == self.tiles() {
-            self.size().pixels() as u64
+            self.checks.map_or(self.size().pixels(), CheckPixels::count) as u64
         } else {
-            tiles.iter().map(|tile| u64::from(self.tiling().tile(*tile).len())).sum()
+            tiles.iter().map(|tile| self.pixels_of(*tile).count() as u64).sum()
         };
         pixels * (samples.end - samples.start)
     }
@@ -381,31 +424,27 @@ impl Estimator for Backward {
         scratch: &mut Scratch,
         sums: &ExactSums,
     ) -> UnitResult {
-        let (tiles, samples) = Self::piece(samples, tiles, unit);
-        let tiling = self.tiling();
-        let pixels_of = |tile: &u32| {
-            let tile = tiling.tile(*tile);
-            (0..tile.len()).map(move |at| tile.pixel(at))
-        };
-        let pixels: Vec<u32> = tiles.iter().flat_map(pixels_of).collect();
+        let (tiles, samples) = self.piece(samples, tiles, unit);
+        let pixels: Vec<u32> = tiles.iter().flat_map(|tile| self.pixels_of(*tile)).collect();
         let result = self.unit(&mut scratch.0, &pixels, samples.start as u32..samples.end as u32, sums);
         UnitResult { rays: pixels.len() as u64 * (samples.end - samples.start), error: result.err() }
     }
 
     fn weights(&self, done: &[&Done], _rays: u64, time_s: f64) -> Vec<f64> {
-        let tiles = self.tiles();
-        let mut of_tile = vec![0; tiles];
-        for half in done {
-            (0..).zip(&mut of_tile).for_each(|(tile, samples)| *samples += half.samples_of(tile));
-            let Some((samples, units)) = half.open() else { continue };
-            let active = half.active(tiles);
-            for unit in units.ranges().flatten() {
-                let (tiles, piece) = Self::piece(samples, &active, unit);
-                tiles.iter().for_each(|tile| of_tile[*tile as usize] += piece.end - piece.start);
-            }
+        let of_part: Vec<Vec<u64>> = done.iter().map(|part| self.samples_of_tiles(part)).collect();
+        let weight = |samples: u64| time_s / self.scale / samples.max(1) as f64;
+        let Some((own, check)) = of_part.split_first() else { return vec![weight(0); self.size().pixels()] };
+        let spread = |samples: &dyn Fn(usize) -> u64| {
+            self.tiling().spread(&(0..self.tiles()).map(|tile| weight(samples(tile))).collect::<Vec<f64>>())
+        };
+        let mut weights = spread(&|tile| own[tile]);
+        if let [check] = check {
+            // Check pixels have the samples of both sequences.
+            let (of_both, checks) = (spread(&|tile| own[tile] + check[tile]), self.check_pixels(self.pipeline.seed));
+            let both = (0..).zip(weights.iter_mut().zip(of_both));
+            both.filter(|(pixel, _)| checks.group_of(*pixel).is_some()).for_each(|(_, (own, of_both))| *own = of_both);
         }
-        let of_tile: Vec<f64> = of_tile.into_iter().map(|n| time_s / self.scale / n.max(1) as f64).collect();
-        self.tiling().spread(&of_tile)
+        weights
     }
 
     fn metered(&self, workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {

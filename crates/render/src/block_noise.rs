@@ -1,113 +1,169 @@
-//! Measures how noisy a picture is and where it is clean, from two halves of the samples with independently scrambled random numbers.
+//! Measures how noisy a picture is and where it is clean, from the difference between two parts of its light with independently scrambled
+//! random numbers ([`crate::parts`]).
 //!
-//! The difference between the halves of a pixel is twice the error of their mean. Its mean square over the 256 pixels of a block is
-//! therefore known to within about 4 %, whatever the light looks like. Everything is computed from exact sums in a fixed order, so that
-//! every machine finds the same blocks clean.
+//! Light that may land anywhere has two halves: the difference between them is twice the error of their mean, in each of the 256 pixels of a
+//! block. Light of single pixels has a second sequence in every eighth pixel: the difference between the two sequences has twice the
+//! variance of one. A block has 32 such pixels, which tell its noise to within an eighth. Its neighbors in the same square of 64 x 64
+//! pixels are judged together with it, unless it differs from them by more than chance allows.
+//!
+//! Whether a tile of light of single pixels goes on depends on such light of its square alone. If the noise is small enough relative to
+//! this light, it is small enough relative to all light.
+//!
+//! Everything is computed from exact sums in a fixed order, so that every machine finds the same blocks clean.
 
-use crate::estimator::Estimator;
-use crate::light::{EstimatorSums, Light};
+use crate::blocks::Blocks;
+use crate::light::Light;
 use crate::noise::Noise;
+use crate::parts::Role;
 use crate::renderer::Renderer;
-use crate::tiles::TILE;
-use crate::{SingleThread, Workers};
+use crate::tolerance::Tolerance;
+use crate::{RenderError, SingleThread, Workers};
 use spectra_core::workers::map_pieces;
-use spectra_scene::Scene;
 use std::convert::Infallible;
 
-/// Side of a block, pixels; it holds whole tiles.
-const BLOCK: usize = 16;
-const _: () = assert!(BLOCK.is_multiple_of(TILE as usize));
-/// A block darker than this fraction of the frame's median block (four stops) is judged as if it were no darker.
-const DARKEST: f64 = 1.0 / 16.0;
 /// An estimator goes on in a block if it causes at least this fraction of the variance, divided by the number of estimators.
 const OWN_PART: f64 = 0.5;
+/// A block is judged by itself if its deviation differs from that of its neighborhood by this many standard errors. That of n differences
+/// is 1 / sqrt(2 n).
+const BY_ITSELF: f64 = 2.0;
 
 /// Sums over one block of pixels in one channel.
 #[derive(Clone, Debug, Default)]
 struct Cell {
-    /// Sum of the two halves over the lit pixels.
+    /// Sum of all light over the pixels, and of the light of single pixels.
     sum: f64,
-    /// Number of pixels that any light reached. In a mosaic, pixels of other colors have none.
+    local: f64,
+    /// Number of pixels that any light reached, and of check pixels that light of single pixels reached. In a mosaic, pixels of other
+    /// colors have none.
     lit: f64,
-    /// Sums of squared differences between the halves, one for each estimator.
+    lit_checks: f64,
+    /// Sums of squared errors of the pixels, one for each kind of light: over all pixels for light in halves, over check pixels for light of
+    /// single pixels.
     squares: Vec<f64>,
 }
 
 impl Cell {
-    /// Returns the mean of both halves over the lit pixels.
+    /// Returns the mean of all light over the lit pixels.
     fn mean(&self) -> f64 {
-        if self.lit > 0.0 { 0.5 * self.sum / self.lit } else { 0.0 }
+        over(self.sum, self.lit)
+    }
+
+    /// Returns the mean of the light of single pixels over the lit pixels.
+    fn local_mean(&self) -> f64 {
+        over(self.local, self.lit)
+    }
+
+    /// Returns the variance of a pixel that a kind of light causes.
+    fn variance(&self, kind: usize, is_local: bool) -> f64 {
+        over(self.squares[kind], if is_local { self.lit_checks } else { self.lit })
     }
 }
 
-/// The frame, divided into blocks.
-struct Blocks {
-    across: usize,
-    down: usize,
-    width: usize,
-    height: usize,
-}
-
-impl Blocks {
-    fn of(scene: &Scene) -> Self {
-        let size = scene.imager.size();
-        let (width, height) = (size.width_px as usize, size.height_px as usize);
-        Self { across: width.div_ceil(BLOCK), down: height.div_ceil(BLOCK), width, height }
-    }
-
-    /// Iterates over the pixels of a block, row by row.
-    fn pixels(&self, block: usize) -> impl Iterator<Item = usize> {
-        self.each(block, 1)
-    }
-
-    /// Iterates over the first pixel of each tile of a block.
-    fn tiles(&self, block: usize) -> impl Iterator<Item = usize> {
-        self.each(block, TILE as usize)
-    }
-
-    /// Iterates over the first pixel of each square of this side in a block.
-    fn each(&self, block: usize, side: usize) -> impl Iterator<Item = usize> {
-        let (column, row) = (block % self.across * BLOCK, block / self.across * BLOCK);
-        let columns = (column..self.width.min(column + BLOCK)).step_by(side);
-        let (rows, width) = ((row..self.height.min(row + BLOCK)).step_by(side), self.width);
-        rows.flat_map(move |row| columns.clone().map(move |column| row * width + column))
-    }
+/// Returns a sum divided by a number, 0 if the number is 0.
+fn over(sum: f64, number: f64) -> f64 {
+    if number > 0.0 { sum / number } else { 0.0 }
 }
 
 /// The noise of each block.
 struct BlockNoise {
     blocks: Blocks,
-    /// Noise of each block, in the worst of the channels that count.
+    /// Noise, and the noise that is asked for, in the channel that is worst there.
     noise: Vec<f64>,
-    /// Fraction of each block's variance that each estimator causes, in the channel that is worst there.
-    share: Vec<Vec<f64>>,
+    asked: Vec<f64>,
+    /// Whether a kind of light goes on in a block.
+    goes_on: Vec<Vec<bool>>,
 }
 
 impl Renderer {
     /// Measures the noise of all blocks.
-    fn judge(&self, light: &Light, workers: &dyn Workers) -> BlockNoise {
-        let blocks = Blocks::of(self.scene());
-        let kinds = light.parts.len() / 2;
-        let (first, second) = light.parts.split_at(kinds);
-        let estimators: Vec<&dyn Estimator> = self.estimators().take(kinds).collect();
-        let weights = |parts: &[EstimatorSums]| -> Vec<Vec<f64>> {
-            let of = |(e, part): (&&dyn Estimator, &EstimatorSums)| e.weights(&[&part.done], part.rays, 1.0);
-            estimators.iter().zip(parts).map(of).collect()
-        };
-        let (of_first, of_second) = (weights(first), weights(second));
+    fn judge(&self, light: &Light, workers: &dyn Workers) -> Result<BlockNoise, RenderError> {
+        let blocks = Blocks::of(self.scene().imager.size());
+        let kinds = self.parts().kinds;
+        let is_local: Vec<bool> = self.parts().all[kinds..].iter().map(|part| part.role == Role::Check).collect();
+        let cells = self.cells_of_blocks(light, &blocks, workers);
+        let tolerances = self.tolerances(light)?;
+        let count = blocks.count();
+        let (mut noise, mut asked) = (vec![0.0_f64; count], vec![0.0_f64; count]);
+        let mut excess = vec![0.0_f64; count];
+        let mut goes_on = vec![vec![false; count]; kinds];
+        let local_kinds = is_local.iter().filter(|is| **is).count() as f64;
+        for (cells, tolerance) in cells.iter().zip(&tolerances) {
+            let tolerance = tolerance.with_floor(|| median(cells.iter().map(Cell::mean)));
+            let variances = |cell: &Cell| -> Vec<f64> {
+                is_local.iter().enumerate().map(|(kind, is_local)| cell.variance(kind, *is_local)).collect()
+            };
+            let of = |local: bool, variances: &[f64]| -> f64 {
+                variances.iter().zip(&is_local).filter(|(_, is)| **is == local).map(|(v, _)| v).sum()
+            };
+            let allowed = |mean: f64| tolerance.deviation(mean) * tolerance.deviation(mean);
+            // Variance of the light of single pixels, as a multiple of what is allowed.
+            let local: Vec<f64> =
+                cells.iter().map(|cell| over(of(true, &variances(cell)), allowed(cell.local_mean()))).collect();
+            for (block, cell) in cells.iter().enumerate() {
+                let own = variances(cell);
+                let (local, checks) = pooled(
+                    (local[block], cell.lit_checks),
+                    blocks.around(block).map(|at| (local[at], cells[at].lit_checks)),
+                );
+                let all = of(false, &own) + local * allowed(cell.local_mean());
+                let times = over(all, allowed(cell.mean())).sqrt();
+                if times > excess[block] {
+                    let mean = cell.mean().max(tolerance.floor());
+                    (excess[block], noise[block], asked[block]) =
+                        (times, all.sqrt() / mean, tolerance.deviation(cell.mean()) / mean);
+                }
+                for kind in 0..kinds {
+                    let (goes, least) = if is_local[kind] {
+                        (local * sure(checks) > 1.0, OWN_PART / local_kinds * of(true, &own))
+                    } else {
+                        (times > 1.0, OWN_PART / kinds as f64 * all)
+                    };
+                    goes_on[kind][block] |= goes && own[kind] >= least;
+                }
+            }
+        }
+        Ok(BlockNoise { blocks, noise, asked, goes_on })
+    }
+
+    /// Sums the light of each block in each judged channel.
+    fn cells_of_blocks(&self, light: &Light, blocks: &Blocks, workers: &dyn Workers) -> Vec<Vec<Cell>> {
+        let (parts, kinds) = (self.parts(), self.parts().kinds);
+        let time_s = self.scene().exposure_time_s();
+        let weights: Vec<Vec<f64>> = parts
+            .estimators()
+            .zip(&light.parts)
+            .map(|(estimator, part)| estimator.weights(&[&part.done], part.rays, time_s))
+            .collect();
         let (channels, judged) = (self.recorded().len(), self.judged_channels());
         let cell = |block: usize, channel: usize| {
             let mut cell = Cell { squares: vec![0.0; kinds], ..Cell::default() };
             for pixel in blocks.pixels(block) {
-                let (at, mut sum) = (pixel * channels + channel, 0.0);
+                let (mut sum, mut local, mut is_check) = (0.0, 0.0, false);
+                let value = |at: usize| {
+                    let place = parts.place(&parts.all[at], pixel)?;
+                    Some(light.parts[at].sums.get(place * channels + channel) as f64 * weights[at][pixel])
+                };
                 for kind in 0..kinds {
-                    let a = first[kind].sums.get(at) as f64 * of_first[kind][pixel];
-                    let b = second[kind].sums.get(at) as f64 * of_second[kind][pixel];
-                    sum += a + b;
-                    cell.squares[kind] += (a - b) * (a - b);
+                    let (Some(a), b) = (value(kind), value(kinds + kind)) else { continue };
+                    match (parts.all[kinds + kind].role, b) {
+                        (Role::Check, Some(b)) => {
+                            // One sequence has half the variance of the difference.
+                            cell.squares[kind] += 0.5 * (a - b) * (a - b);
+                            (sum, local, is_check) = (sum + 0.5 * (a + b), local + 0.5 * (a + b), true);
+                        }
+                        (Role::Check, None) => (sum, local) = (sum + a, local + a),
+                        (_, b) => {
+                            // The error of the mean of two halves is half their difference.
+                            let b = b.unwrap_or(a);
+                            cell.squares[kind] += 0.25 * (a - b) * (a - b);
+                            sum += 0.5 * (a + b);
+                        }
+                    }
                 }
                 cell.sum += sum;
+                cell.local += local;
                 cell.lit += f64::from(u8::from(sum != 0.0));
+                cell.lit_checks += f64::from(u8::from(is_check && local != 0.0));
             }
             cell
         };
@@ -117,60 +173,62 @@ impl Renderer {
             Ok(judged.iter().map(of).collect())
         };
         let Ok(rows) = map_pieces(workers, blocks.down, || (), row);
-        let mut noise = vec![0.0_f64; blocks.across * blocks.down];
-        let mut share = vec![vec![0.0_f64; noise.len()]; kinds];
-        for channel in 0..judged.len() {
-            let cells: Vec<&Cell> = rows.iter().flat_map(|row| &row[channel]).collect();
-            // The median block sets the limit below which a block counts as dark.
-            let mut means: Vec<f64> = cells.iter().map(|cell| cell.mean()).collect();
-            let middle = means.len() / 2;
-            let floor = DARKEST * *means.clone().select_nth_unstable_by(middle, f64::total_cmp).1;
-            means.iter_mut().for_each(|mean| *mean = mean.max(floor));
-            for (block, cell) in cells.iter().enumerate() {
-                let square: f64 = cell.squares.iter().sum();
-                if !(square > 0.0 && means[block] > 0.0) {
-                    continue;
-                }
-                // The error of the mean of two halves is half their difference.
-                let own = 0.5 * (square / cell.lit).sqrt() / means[block];
-                if own > noise[block] {
-                    noise[block] = own;
-                    for (share, of_kind) in share.iter_mut().zip(&cell.squares) {
-                        share[block] = of_kind / square;
-                    }
-                }
-            }
-        }
-        BlockNoise { blocks, noise, share }
+        (0..judged.len()).map(|channel| rows.iter().flat_map(|row| row[channel].clone()).collect()).collect()
     }
 
     /// Ends the tiles that are clean: they get no more samples. Must be called between rounds only.
-    pub(crate) fn end_clean(&self, light: &mut Light, asked: f64, workers: &dyn Workers) {
-        let BlockNoise { blocks, noise, share } = self.judge(light, workers);
-        let kinds = light.parts.len() / 2;
-        let least = OWN_PART / kinds as f64;
-        for (kind, estimator) in self.estimators().take(kinds).enumerate() {
-            let mut goes_on = vec![false; estimator.tiles()];
-            for block in (0..noise.len()).filter(|b| noise[*b] > asked && share[kind][*b] >= least) {
-                blocks.tiles(block).for_each(|pixel| goes_on[estimator.tile_of(pixel)] = true);
+    pub(crate) fn end_clean(&self, light: &mut Light, workers: &dyn Workers) -> Result<(), RenderError> {
+        let BlockNoise { blocks, goes_on, .. } = self.judge(light, workers)?;
+        let kinds = self.parts().kinds;
+        for (kind, part) in self.parts().firsts().iter().enumerate() {
+            let estimator = &part.estimator;
+            let mut tiles = vec![false; estimator.tiles()];
+            for block in (0..blocks.count()).filter(|block| goes_on[kind][*block]) {
+                blocks.tiles(block).for_each(|pixel| tiles[estimator.tile_of(pixel)] = true);
             }
-            for (tile, _) in goes_on.iter().enumerate().filter(|(_, goes_on)| !**goes_on) {
+            for (tile, _) in tiles.iter().enumerate().filter(|(_, goes_on)| !**goes_on) {
                 light.parts[kind].done.end_tile(tile as u32);
                 light.parts[kinds + kind].done.end_tile(tile as u32);
             }
         }
+        Ok(())
     }
 
-    /// Returns the noise of the light so far; `None` if the scene asks for none, or if the light does not have two halves yet.
-    pub(crate) fn noise(&self, light: &Light) -> Option<Noise> {
-        let asked = self.scene().render.noise?;
-        if light.parts.iter().any(|part| part.rays == 0) {
-            return None;
+    /// Returns the noise of the light so far; `None` if the scene asks for none, or if a part of the light has no ray yet.
+    pub(crate) fn noise(&self, light: &Light) -> Result<Option<Noise>, RenderError> {
+        if self.scene().render.noise.is_none() || light.parts.iter().any(|part| part.rays == 0) {
+            return Ok(None);
         }
-        let mut noise = self.judge(light, &SingleThread).noise;
+        let BlockNoise { mut noise, asked, .. } = self.judge(light, &SingleThread)?;
+        let clean = noise.iter().zip(&asked).filter(|(n, asked)| n <= asked).count() as f64 / noise.len() as f64;
+        let by_grain = self.tolerances(light)?.iter().any(Tolerance::is_grain);
+        let asked = median(asked.into_iter().filter(|asked| *asked > 0.0));
         noise.sort_unstable_by(f64::total_cmp);
         let of = |part: f64| noise[((noise.len() - 1) as f64 * part) as usize];
-        let clean = noise.iter().filter(|n| **n <= asked).count() as f64 / noise.len() as f64;
-        Some(Noise { asked, median: of(0.5), p95: of(0.95), worst: of(1.0), clean })
+        Ok(Some(Noise { asked, by_grain, median: of(0.5), p95: of(0.95), worst: of(1.0), clean }))
     }
+}
+
+/// Returns the mean variance of a block and its neighbors, or that of the block alone if it differs by more than chance. Each variance comes
+/// with the number of check pixels that it was measured in.
+fn pooled((alone, checks): (f64, f64), near: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
+    let (sum, all) = near.fold((0.0, 0.0), |(sum, all), (own, checks)| (sum + own * checks, all + checks));
+    let pooled = over(sum, all);
+    let chance = 1.0 + BY_ITSELF / (2.0 * checks).sqrt();
+    let ratio = over(alone, pooled).sqrt();
+    if ratio > chance || ratio * chance < 1.0 { (alone, checks) } else { (pooled, all) }
+}
+
+/// Returns the factor by which a variance may be larger than was measured in this many check pixels: by one standard error of the deviation.
+/// Without it, places would stop as soon as their noise looks too small by chance.
+fn sure(checks: f64) -> f64 {
+    let deviation = 1.0 + 1.0 / (2.0 * checks).sqrt();
+    deviation * deviation
+}
+
+/// Returns the median of some values, 0 if there are none.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut all: Vec<f64> = values.collect();
+    let middle = all.len() / 2;
+    if all.is_empty() { 0.0 } else { *all.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }

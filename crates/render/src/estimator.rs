@@ -58,7 +58,7 @@ use std::ops::Range;
 ///     }
 ///     fn weights(&self, done: &[&Done], _rays: u64, time_s: f64) -> Vec<f64> {
 ///         // Each sample has added 1 to each sum.
-///         let samples: u64 = done.iter().map(|half| half.samples_of(0)).sum();
+///         let samples: u64 = done.iter().map(|part| part.samples_of(0)).sum();
 ///         vec![self.w_m2 * time_s / samples.max(1) as f64; self.pixels]
 ///     }
 ///     fn metered(&self, _workers: &dyn Workers) -> Result<Vec<Vec<f64>>, RenderError> {
@@ -85,9 +85,15 @@ pub trait Estimator: Send + Sync {
     /// Returns the number of the tile that holds a pixel.
     fn tile_of(&self, pixel: usize) -> usize;
 
-    /// Returns a copy that draws its samples from the random numbers of `seed`, for the picture with seed `picture`. What was searched and
+    /// Returns a copy that draws its samples from the random numbers of `seed`, for the picture with seed `picture`. What was found and
     /// decided before the first ray is shared.
     fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator>;
+
+    /// Returns a copy that traces the check pixels alone, one in eight, so that the noise can be judged by a second sequence there. Its sums
+    /// are numbered by check pixels, and its tiles are the same. `None` if light may land anywhere: such light is divided into halves.
+    fn in_check_pixels(&self) -> Option<Box<dyn Estimator>> {
+        None
+    }
 
     /// Returns the number of units that a span of samples of these tiles is divided into.
     fn units(&self, samples: &Range<u64>, tiles: &[u32]) -> u64;
@@ -114,8 +120,9 @@ pub trait Estimator: Send + Sync {
         None
     }
 
-    /// Returns the factor for each pixel that turns its integer sums into W/m2 times the exposure time. The sums are those of one half of the
-    /// samples, or of both halves added up: `done` says for each half what is in them. `rays` were launched for all of them.
+    /// Returns the factor for each pixel that turns its integer sums into W/m2 times the exposure time. The sums are those of one part of the
+    /// samples, or of two added up: `done` says for each part what is in them. The two are halves, or those of this estimator and of its copy
+    /// [in check pixels](Estimator::in_check_pixels). `rays` were launched for all of them.
     fn weights(&self, done: &[&Done], rays: u64, time_s: f64) -> Vec<f64>;
 
     /// Computes what the camera's meters see, with rays of its own, traced in the same way as those of the picture. Returns W/m2 at each

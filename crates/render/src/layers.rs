@@ -7,6 +7,7 @@
 
 use crate::estimator::Estimator;
 use crate::light::EstimatorSums;
+use crate::parts::Part;
 use crate::{Light, RenderError, Renderer};
 use spectra_core::frame::ExposureChannel;
 use spectra_scene::{GhostPaths, LightKind, LightLayer, Scene};
@@ -73,11 +74,12 @@ impl Renderer {
         let (channels, of_meters) = (recorded.len(), scene.meter_channels());
         let metered = light.metered.as_deref().unwrap_or_default();
         let time_s = scene.exposure_time_s();
-        let own = self.estimators().zip(&light.parts).zip(weights.iter().cycle());
-        let own = own.filter(|((e, _), _)| layer.is_none_or(|(kind, _)| kind == e.light()));
-        let taken = |e: &dyn Estimator| SumSelection::of(layer.map_or(&GhostPaths::All, |(_, paths)| paths), e.paths());
-        let parts: Vec<(&EstimatorSums, &Vec<f64>, SumSelection)> =
-            own.filter_map(|((e, part), w)| Some((part, w, taken(e)?))).collect();
+        let own = self.parts().all.iter().zip(&light.parts).zip(weights.iter().cycle());
+        let own = own.filter(|((part, _), _)| layer.is_none_or(|(kind, _)| kind == part.estimator.light()));
+        let paths = layer.map_or(&GhostPaths::All, |(_, paths)| paths);
+        let taken = |part: &Part| SumSelection::of(paths, part.estimator.paths());
+        let parts: Vec<(&Part, &EstimatorSums, &Vec<f64>, SumSelection)> =
+            own.filter_map(|((part, sums), w)| Some((part, sums, w, taken(part)?))).collect();
         let cells = self.cells();
         let sum = |part: &EstimatorSums, taken: &SumSelection, cell: usize| -> i64 {
             let all = part.sums.get(taken.from * cells + cell);
@@ -90,10 +92,14 @@ impl Renderer {
             values.try_reserve_exact(pixels).map_err(|_| self.too_large())?;
             let seen = of_meters.iter().position(|meter| *meter == number).and_then(|at| metered.get(at));
             if let Some(at) = recorded.iter().position(|r| *r == number).filter(|_| !parts.is_empty()) {
-                values.extend((0..pixels).map(|p| {
-                    let own = parts.iter().map(|(part, w, taken)| sum(part, taken, p * channels + at) as f64 * w[p]);
+                let of_pixel = |p: usize| {
+                    let own = parts.iter().filter_map(|(part, sums, w, taken)| {
+                        let place = self.parts().place(part, p)?;
+                        Some(sum(sums, taken, place * channels + at) as f64 * w[p])
+                    });
                     own.sum::<f64>() as f32
-                }));
+                };
+                values.extend((0..pixels).map(of_pixel));
             } else if let Some(seen) = seen.filter(|_| is_straight) {
                 values.extend(seen.iter().map(|value| (value * time_s) as f32));
             } else {

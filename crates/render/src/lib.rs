@@ -14,14 +14,16 @@
 //! Light can therefore be stopped, saved, loaded and continued, and has the bits of a run without a stop. The renderer refuses to go beyond
 //! random numbers that are laid out in strata for a fixed number of samples.
 //!
-//! **Noise.** If a scene limits the noise (`render.noise`), each estimator exists twice, with independently scrambled numbers, and each
-//! half traces half of the samples. After each complete round, tiles whose blocks are clean get no more samples. The decisions rest on
-//! exact sums, so they are the same however the work was divided.
+//! **Noise.** If a scene limits the noise (`render.noise`), each kind of light has two parts with independently scrambled numbers, whose
+//! difference tells the noise (`parts.rs`). After each round, tiles whose blocks are clean get no more samples. The decisions rest on exact
+//! sums, so they are the same however the work was divided.
 
 #![cfg_attr(not(test), warn(clippy::disallowed_methods))]
 
 mod backward;
 mod block_noise;
+mod blocks;
+mod check_pixels;
 mod control;
 mod diffracted;
 mod done;
@@ -42,6 +44,7 @@ mod meter;
 mod noise;
 mod non_finite;
 mod options;
+mod parts;
 mod passes;
 mod pilot;
 mod pipeline;
@@ -53,6 +56,7 @@ mod spots;
 mod star_trial;
 mod sums;
 mod tiles;
+mod tolerance;
 mod veil;
 mod warnings;
 mod workers;

@@ -10,17 +10,17 @@ pub struct Light {
     pub(crate) losses: LossCounts,
     /// What the meters see, once measured: see [`crate::Estimator::metered`].
     pub(crate) metered: Option<Vec<Vec<f64>>>,
-    /// Number of samples of each half at the last decision where to go on.
+    /// Number of samples at the last decision where to go on.
     pub(crate) judged: u64,
-    /// Number of halves that the samples are divided into: two if noise is limited, else one.
-    pub(crate) halves: u64,
     /// Whether the first pass over the frame is complete.
     pub(crate) covers_frame: bool,
 }
 
-/// The sums and counters of one estimator.
+/// The sums and counters of one part of a render.
 pub(crate) struct EstimatorSums {
     pub sums: ExactSums,
+    /// Number of parts that the samples of this kind of light are divided among.
+    pub share: u64,
     pub done: Done,
     pub rays: u64,
     /// Number of these rays that brought light to the imager.
@@ -31,12 +31,7 @@ impl Light {
     /// Returns the number of samples of each pixel that are in the sums: with several estimators, the smallest number.
     #[must_use]
     pub fn samples(&self) -> u64 {
-        self.halves * self.complete()
-    }
-
-    /// Returns the number of samples of each half that all estimators have completed.
-    pub(crate) fn complete(&self) -> u64 {
-        self.parts.iter().map(|part| part.done.complete()).min().unwrap_or(0)
+        self.parts.iter().map(|part| part.share * part.done.complete()).min().unwrap_or(0)
     }
 
     /// Returns whether the first pass over the frame is complete, so that every pixel has light of each kind.

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 
 /// First bytes of every light file; the last digit is the version of the format.
-const MAGIC: &[u8; 16] = b"spectra light 6\n";
+const MAGIC: &[u8; 16] = b"spectra light 7\n";
 
 /// A stream of little-endian numbers followed by a checksum (64-bit FNV-1a by G. Fowler, L. C. Noll, K.-P. Vo, over words of eight bytes).
 struct LightStream<T> {
@@ -76,7 +76,7 @@ impl Light {
         form.number(self.judged)?;
         form.number(u64::from(self.covers_frame))?;
         form.number(self.parts.len() as u64)?;
-        for EstimatorSums { sums, done, rays, detected } in &self.parts {
+        for EstimatorSums { sums, share: _, done, rays, detected } in &self.parts {
             form.number(*rays)?;
             form.number(*detected)?;
             form.number(done.complete())?;

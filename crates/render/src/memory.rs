@@ -1,10 +1,13 @@
 //! Computes how much memory a picture needs, before any light is traced.
 
+use crate::check_pixels::PIXELS_A_CHECK;
 use spectra_core::params::{Faults, Value};
-use spectra_scene::{FileContent, Lights, Scene};
+use spectra_scene::{Direction, FileContent, Lights, Scene};
 
 /// Bytes of a sum, of which there is one for each pixel and channel.
 const SUM: u64 = 8;
+/// Number of pixels for each check pixel.
+const CHECKS: u64 = PIXELS_A_CHECK as u64;
 /// Bytes of an exposure, of which there is one for each pixel and channel.
 const EXPOSURE: u64 = 4;
 /// Bytes per pixel that an estimator of veiling glare stores.
@@ -34,7 +37,10 @@ fn needed(scene: &Scene, paths: u64) -> u64 {
     };
     // Ghosts have their own sums, too. If the scene does not say, whether they matter is not known before they are searched.
     let ghosts = scene.render.reflections.order.map_or(apart, |order| order > 0);
-    let halves = 1 + u64::from(scene.render.noise.is_some());
+    // With a limit on the noise, light that may land anywhere has two halves, and light of single pixels has sums of its check pixels.
+    let is_limited = scene.render.noise.is_some();
+    let halves = 1 + u64::from(is_limited);
+    let is_local = scene.render.direction == Direction::Backward;
     // Light that haze, dust and scratches scatter is traced separately from the rest.
     let scattered = if scene.lens.scatters() { 1 + u64::from(apart) } else { 0 };
     // There is one veil of all light, or one of the lights and one of the rest, whether or not rendering lights separately pays.
@@ -46,7 +52,10 @@ fn needed(scene: &Scene, paths: u64) -> u64 {
     let of_paths = if paths == 0 { 0 } else { 1 + if ghosts { paths } else { 0 } };
     let layers = scene.light_layers().len() as u64 + of_paths;
     let layers = if layers > 0 && scene.render.diffraction.unwrap_or(apart) { layers + 1 } else { layers };
-    let traced = channels * (SUM * halves * kinds + EXPOSURE * (1 + layers)) + GAIN * veils;
+    // Backward light has one kind, and one more of what is scattered.
+    let local = if is_local { 1 + u64::from(scene.lens.scatters()) } else { 0 };
+    let sums = SUM * halves * (kinds - local) + SUM * local + if is_limited { SUM * local / CHECKS } else { 0 };
+    let traced = channels * (sums + EXPOSURE * (1 + layers)) + GAIN * veils;
     // The sums are freed by then. With several films, each is developed from a copy of its own channels.
     let picture = if scene.films.is_empty() { SHOWING } else { DEVELOPING + 3 * EXPOSURE * scene.films.len() as u64 };
     // A file with layers is written from a copy of them.

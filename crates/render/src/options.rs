@@ -20,6 +20,8 @@ pub struct RenderOptions<'a> {
     pub workers: &'a dyn Workers,
     /// The light that is rendered.
     pub traced: Traced,
+    /// Whether the light itself is kept in a file that the scene does not name. `render.noise: auto` then ignores the grain.
+    pub keeps_light: bool,
 }
 
 /// The light that a renderer traces.
@@ -47,6 +49,13 @@ pub enum GhostRays {
 
 impl Default for RenderOptions<'_> {
     fn default() -> Self {
-        Self { isa: Isa::detect(), density: None, effort: Effort::Full, workers: &SingleThread, traced: Traced::All }
+        Self {
+            isa: Isa::detect(),
+            density: None,
+            effort: Effort::Full,
+            workers: &SingleThread,
+            traced: Traced::All,
+            keeps_light: false,
+        }
     }
 }

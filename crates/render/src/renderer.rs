@@ -9,6 +9,7 @@ use crate::landing::Landing;
 use crate::light::{EstimatorSums, Light};
 use crate::memory::memory_needed;
 use crate::noise::{ends_round, next_round};
+use crate::parts::{Part, Parts, Role};
 use crate::passes::{first_units, next_pass};
 use crate::pipeline::{Pipeline, ThreadState};
 use crate::rendering::{GhostNoise, Rendering};
@@ -17,7 +18,6 @@ use crate::veil::{self};
 use crate::{Control, RenderError, RenderOptions, SingleThread, Workers, diffracted, star_trial};
 use spectra_core::LossCounts;
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
-use spectra_core::numbers::mix64;
 use spectra_core::stage::WavelengthDensity;
 use spectra_optics::Effort;
 use spectra_scene::{Direction, LightKind, NumberFamily, Scene};
@@ -34,13 +34,16 @@ const LONGEST_RUN: u64 = 16;
 pub struct Renderer {
     scene: Arc<Scene>,
     pipeline: Arc<Pipeline>,
-    /// The estimators, one for each kind of light and direction; twice, with independent random numbers, if the scene limits the noise.
-    halves: Vec<Vec<Box<dyn Estimator>>>,
+    parts: Parts,
     ledger: Option<LightLedger>,
     /// Whether the bright lights of the source are rendered separately: the first estimator is of the rest, the second of the lights.
     has_lights: bool,
     /// Whether the star of a lamp is bright enough to be seen, once it is known.
     is_star_seen: OnceLock<bool>,
+    /// Whether a file of the light itself is asked for.
+    keeps_light: bool,
+    /// Medians of the frame, once they are known: see [`Renderer::medians`].
+    known_medians: OnceLock<Vec<f64>>,
 }
 
 impl Renderer {
@@ -54,8 +57,10 @@ impl Renderer {
         scene.source.prepare().map_err(RenderError::Source)?;
         let pipeline = Arc::new(Pipeline::new(&scene, options)?);
         let Estimators { all, ledger, has_lights } = Estimators::new(&pipeline, &options.traced, options.workers)?;
-        let halves = halved(&scene, all);
-        let own = Self { halves, scene, pipeline, ledger, has_lights, is_star_seen: OnceLock::new() };
+        let parts = Parts::new(&scene, all);
+        let (is_star_seen, known_medians) = (OnceLock::new(), OnceLock::new());
+        let keeps_light = options.keeps_light || scene.names_light_output();
+        let own = Self { parts, scene, pipeline, ledger, has_lights, is_star_seen, keeps_light, known_medians };
         // Decided before light is traced, so that a render that is stopped knows it. A draft shows no stars.
         if own.scene.render.diffraction.is_none() && options.effort == Effort::Full {
             own.is_star_seen()?;
@@ -75,17 +80,15 @@ impl Renderer {
     pub fn reseeded(&self, seed: u64) -> Self {
         let mut scene = (*self.scene).clone();
         scene.render.seed = seed;
-        let reseed = |(at, half): (usize, &Vec<Box<dyn Estimator>>)| {
-            let own = if self.halves() == 1 { seed } else { half_seed(seed, at as u64) };
-            half.iter().map(|estimator| estimator.reseeded(seed, own)).collect()
-        };
         Self {
-            halves: self.halves.iter().enumerate().map(reseed).collect(),
+            parts: self.parts.reseeded(seed),
             scene: Arc::new(scene),
             pipeline: Arc::new(self.pipeline.of_seed(seed)),
             ledger: self.ledger.clone(),
             has_lights: self.has_lights,
             is_star_seen: self.is_star_seen.clone(),
+            keeps_light: self.keeps_light,
+            known_medians: self.known_medians.clone(),
         }
     }
 
@@ -159,21 +162,20 @@ impl Renderer {
         if !self.meter(light, workers)? {
             return Ok(());
         }
-        let Some(asked) = self.scene.render.noise else {
+        if self.scene.render.noise.is_none() {
             self.expect(light, samples, control);
             return self.trace(light, samples, workers, control);
-        };
-        let upto = samples.div_ceil(self.halves());
+        }
         loop {
-            let done = light.complete();
+            let done = light.samples();
             if ends_round(done) && light.judged < done {
-                self.end_clean(light, asked, workers);
+                self.end_clean(light, workers)?;
                 light.judged = done;
             }
-            if done >= upto || self.is_clean(light) || control.should_stop() {
+            if done >= samples || self.is_clean(light) || control.should_stop() {
                 return Ok(());
             }
-            let end = next_round(done).min(upto);
+            let end = next_round(done).min(samples);
             self.expect(light, end, control);
             self.trace(light, end, workers, control)?;
         }
@@ -187,7 +189,7 @@ impl Renderer {
         if light.covers_frame() || !self.meter(light, workers)? {
             return Ok(());
         }
-        self.expect(light, u64::from(self.scene.render.samples).div_ceil(self.halves()), control);
+        self.expect(light, u64::from(self.scene.render.samples), control);
         self.cover_frame(light, workers, control)
     }
 
@@ -203,10 +205,10 @@ impl Renderer {
         Ok(true)
     }
 
-    /// Tells the caller how many rays there will be when each estimator has `samples` samples.
+    /// Tells the caller how many rays there will be when each pixel has `samples` samples.
     fn expect(&self, light: &Light, samples: u64, control: &Control) {
         let rays = self.estimators().zip(&light.parts).map(|(e, part)| {
-            let tiles = part.done.active(e.tiles());
+            let (samples, tiles) = (samples.div_ceil(part.share), part.done.active(e.tiles()));
             let all = e.rays(&(part.done.complete()..samples.max(part.done.end())), &tiles);
             // Units of an open span that are done have about equally many rays.
             let done = part.done.open().map_or(0.0, |(span, units)| {
@@ -223,24 +225,26 @@ impl Renderer {
     /// # Errors
     /// Returns [`RenderError::Memory`] if the sums do not fit into memory.
     pub fn begin(&self) -> Result<Light, RenderError> {
-        let part = |estimator: &dyn Estimator| {
-            let cells = self.cells().checked_mul(1 + estimator.paths().len());
+        let part = |part: &Part| {
+            let cells = match part.role {
+                Role::Check => self.parts.checks.count().checked_mul(self.recorded().len()),
+                Role::All | Role::Half => self.cells().checked_mul(1 + part.estimator.paths().len()),
+            };
             let sums = cells.and_then(ExactSums::new).ok_or_else(|| self.too_large())?;
-            Ok(EstimatorSums { sums, done: Done::default(), rays: 0, detected: 0 })
+            Ok(EstimatorSums { sums, share: part.share(), done: Done::default(), rays: 0, detected: 0 })
         };
-        let parts = self.estimators().map(part).collect::<Result<_, RenderError>>()?;
-        let halves = self.halves();
-        Ok(Light { parts, losses: LossCounts::default(), metered: None, judged: 0, halves, covers_frame: false })
+        let parts = self.parts.all.iter().map(part).collect::<Result<_, RenderError>>()?;
+        Ok(Light { parts, losses: LossCounts::default(), metered: None, judged: 0, covers_frame: false })
     }
 
-    /// Number of halves of the samples, each with its own random numbers: two if the scene limits the noise, else one.
-    pub(crate) fn halves(&self) -> u64 {
-        self.halves.len() as u64
+    /// The estimators and their shares of the samples.
+    pub(crate) fn parts(&self) -> &Parts {
+        &self.parts
     }
 
-    /// The estimators of the first half: one for each kind of light and direction.
-    pub(crate) fn kinds(&self) -> &[Box<dyn Estimator>] {
-        &self.halves[0]
+    /// One estimator for each kind of light and direction.
+    fn kinds(&self) -> impl Iterator<Item = &dyn Estimator> {
+        self.parts.firsts().iter().map(|part| &*part.estimator)
     }
 
     /// Returns whether the light has all samples that the scene states, or is as clean as the scene asks for.
@@ -252,7 +256,7 @@ impl Renderer {
     /// Whether the requested noise is reached everywhere.
     fn is_clean(&self, light: &Light) -> bool {
         let ended = |(e, part): (&dyn Estimator, &EstimatorSums)| part.done.ended().len() == e.tiles();
-        self.halves() == 2 && self.estimators().zip(&light.parts).all(ended)
+        self.scene.render.noise.is_some() && self.estimators().zip(&light.parts).all(ended)
     }
 
     /// Traces the first pass over the frame, unless it is complete. A faulty ray does not end it.
@@ -283,7 +287,7 @@ impl Renderer {
         units.covers(first_units(estimator, estimator.units(samples, &tiles)))
     }
 
-    /// Continues until each estimator has `samples` samples, in passes over the whole frame.
+    /// Continues until each pixel has `samples` samples, in passes over the whole frame.
     fn trace(
         &self,
         light: &mut Light,
@@ -292,13 +296,14 @@ impl Renderer {
         control: &Control,
     ) -> Result<(), RenderError> {
         self.cover_frame(light, workers, control)?;
-        while light.complete() < samples && !light.parts.is_empty() {
-            let upto = next_pass(light.complete()).min(samples);
+        while light.samples() < samples && !light.parts.is_empty() {
+            let upto = next_pass(light.samples()).min(samples);
             for at in 0..light.parts.len() {
                 if control.should_stop() {
                     return Ok(());
                 }
-                if let Some(span) = light.parts[at].done.next(upto) {
+                let part = &mut light.parts[at];
+                if let Some(span) = part.done.next(upto.div_ceil(part.share)) {
                     self.span(at, &span, light, workers, control)?;
                 }
             }
@@ -422,7 +427,7 @@ impl Renderer {
     pub fn rendering(&self, scene: &Scene, light: &Light) -> Result<Rendering, RenderError> {
         let recorded = &self.pipeline.recorded;
         let time_s = scene.exposure_time_s();
-        let weights: Vec<Vec<f64>> = (0..self.kinds().len()).map(|kind| self.weights(kind, light, time_s)).collect();
+        let weights: Vec<Vec<f64>> = (0..self.parts.kinds).map(|kind| self.weights(kind, light, time_s)).collect();
         let mut planes = self.planes(scene, light, &weights, None)?;
         let mut layers = self.layers(scene, light, &weights)?;
         let star = layers.iter_mut().find(|layer| layer.kind == LightKind::Star);
@@ -447,10 +452,10 @@ impl Renderer {
             rays: light.rays(),
             losses: light.losses.clone(),
             detected: light.detected(),
-            estimators: self.kinds().iter().map(|estimator| estimator.name()).collect(),
+            estimators: self.kinds().map(Estimator::name).collect(),
             samples: light.samples(),
             partial: !self.is_complete(light),
-            noise: self.noise(light),
+            noise: self.noise(light)?,
             ledger: self.ledger.clone(),
             ghost_noise: self.ghost_noise(light.samples()),
             glare: self.glare_of(light, &weights),
@@ -459,20 +464,21 @@ impl Renderer {
         })
     }
 
-    /// Returns the factors that turn the sums of both halves of a kind of light, added up, into exposures.
+    /// Returns the factors that turn the sums of both parts of a kind of light, added up, into exposures.
     fn weights(&self, kind: usize, light: &Light, time_s: f64) -> Vec<f64> {
-        let halves = || light.parts.iter().skip(kind).step_by(self.kinds().len());
-        let done: Vec<&Done> = halves().map(|part| &part.done).collect();
-        self.kinds()[kind].weights(&done, halves().map(|part| part.rays).sum(), time_s)
+        let sums = || self.parts.of_kind(kind, light).map(|(_, sums)| sums);
+        let done: Vec<&Done> = sums().map(|part| &part.done).collect();
+        self.parts.all[kind].estimator.weights(&done, sums().map(|part| part.rays).sum(), time_s)
     }
 
     /// Estimates the noise of ghosts after this many samples.
     fn ghost_noise(&self, samples: u64) -> Option<GhostNoise> {
         const MOST: u64 = 1 << 16;
-        let halves = self.halves();
         let expected = |samples: u64| {
-            let of_half = self.estimators().find_map(|e| e.expected_noise((samples / halves).max(1)));
-            of_half.map(|noise| noise / (halves as f64).sqrt())
+            self.parts.firsts().iter().find_map(|part| {
+                let of_part = part.estimator.expected_noise((samples / part.share()).max(1));
+                of_part.map(|noise| noise / (part.share() as f64).sqrt())
+            })
         };
         let noise = expected(samples)?;
         let more = || std::iter::successors(Some(samples.max(1)), |samples| Some(samples + samples.div_ceil(4)));
@@ -487,8 +493,10 @@ impl Renderer {
         if let Some(seen) = self.is_star_seen.get() {
             return Ok(*seen);
         }
-        let seen = match self.kinds() {
-            [rest, lights, ..] if self.has_lights => star_trial::is_star_seen(&self.pipeline, &**rest, &**lights)?,
+        let seen = match self.parts.firsts() {
+            [rest, lights, ..] if self.has_lights => {
+                star_trial::is_star_seen(&self.pipeline, &*rest.estimator, &*lights.estimator)?
+            }
             _ => false,
         };
         Ok(*self.is_star_seen.get_or_init(|| seen))
@@ -499,11 +507,12 @@ impl Renderer {
         self.scene.render.glare?;
         let channels = self.pipeline.recorded.len();
         let (mut glare, mut all) = (0.0, 0.0);
-        for ((estimator, part), weights) in self.estimators().zip(&light.parts).zip(weights.iter().cycle()) {
-            let of_pixel = |p: usize| (0..channels).map(|at| part.sums.get(p * channels + at) as f64).sum::<f64>();
+        for ((part, sums), weights) in self.parts.all.iter().zip(&light.parts).zip(weights.iter().cycle()) {
+            let of_place = |p: usize| (0..channels).map(|at| sums.sums.get(p * channels + at) as f64).sum::<f64>();
+            let of_pixel = |p: usize| self.parts.place(part, p).map_or(0.0, of_place);
             let own: f64 = weights.iter().enumerate().map(|(p, weight)| weight * of_pixel(p)).sum();
             all += own;
-            glare += if estimator.name() == veil::ESTIMATOR { own } else { 0.0 };
+            glare += if part.estimator.name() == veil::ESTIMATOR { own } else { 0.0 };
         }
         (all > 0.0).then_some(glare / all)
     }
@@ -528,9 +537,24 @@ impl Renderer {
         self.pipeline.judged_channels()
     }
 
-    /// All estimators: those of the first half, then those of the second.
+    /// The stages of the scene, ready to trace.
+    pub(crate) fn pipeline(&self) -> &Pipeline {
+        &self.pipeline
+    }
+
+    /// Whether a file of the light itself is asked for.
+    pub(crate) fn keeps_light(&self) -> bool {
+        self.keeps_light
+    }
+
+    /// The medians of the frame, once they are known.
+    pub(crate) fn known_medians(&self) -> &OnceLock<Vec<f64>> {
+        &self.known_medians
+    }
+
+    /// The estimators of all parts.
     pub(crate) fn estimators(&self) -> impl Iterator<Item = &dyn Estimator> {
-        self.halves.iter().flatten().map(|e| &**e)
+        self.parts.estimators()
     }
 
     /// Number of sums for all the light of one estimator: one for each pixel and channel.
@@ -541,19 +565,4 @@ impl Renderer {
     pub(crate) fn too_large(&self) -> RenderError {
         RenderError::Memory(memory_needed(&self.scene))
     }
-}
-
-/// Returns the estimators unchanged, or twice with independently scrambled random numbers if the scene limits the noise.
-fn halved(scene: &Scene, estimators: Vec<Box<dyn Estimator>>) -> Vec<Vec<Box<dyn Estimator>>> {
-    if scene.render.noise.is_none() {
-        return vec![estimators];
-    }
-    let seed = scene.render.seed;
-    let half = |half| estimators.iter().map(|e| e.reseeded(seed, half_seed(seed, half))).collect();
-    vec![half(0), half(1)]
-}
-
-/// Returns the seed of the random numbers of one half of the samples.
-fn half_seed(seed: u64, half: u64) -> u64 {
-    mix64(seed ^ mix64(half + 1))
 }

@@ -50,7 +50,7 @@ fn new_sums(pipeline: &Pipeline) -> Result<ExactSums, RenderError> {
 }
 
 /// Returns the median of the frame in each channel, W/m2, from some of its tiles.
-fn medians(pipeline: &Pipeline, rest: &dyn Estimator) -> Result<Vec<f64>, RenderError> {
+pub(crate) fn medians(pipeline: &Pipeline, rest: &dyn Estimator) -> Result<Vec<f64>, RenderError> {
     let (all, channels) = (rest.tiles(), pipeline.recorded.len());
     let tiles: Vec<u32> = (0..all.min(TILES)).map(|i| (i * all / all.min(TILES)) as u32).collect();
     let (trial, samples) = (rest.reseeded(PILOT_SEED, PILOT_SEED), 0..SAMPLES);

@@ -53,8 +53,8 @@ pub use negatives::Negatives;
 pub use output::{FileContent, Output, OutputEntry, SeriesSummary};
 pub use resources::{FileResources, NO_LENS, NO_LENS_F_NUMBER};
 pub use scene::{
-    ConePattern, Direction, FilmTime, GhostSpread, Lights, MID_GRAY, NumberFamily, Reflections, RenderSettings, Scene,
-    SceneFilm,
+    ConePattern, Direction, FilmTime, GhostSpread, Lights, MID_GRAY, NoiseLimit, NumberFamily, Reflections,
+    RenderSettings, Scene, SceneFilm,
 };
 pub use schema::{FileKind, file_documentation, file_schema, shared_documentation};
 pub use shot::{Developed, Shot};

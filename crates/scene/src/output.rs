@@ -161,6 +161,13 @@ pub(crate) fn check(
 }
 
 impl Scene {
+    /// Returns whether the scene names an output that holds the light itself, as opposed to outputs that are written without being
+    /// named.
+    #[must_use]
+    pub fn names_light_output(&self) -> bool {
+        self.params.get("output").is_some() && self.output.iter().any(|output| output.content() == FileContent::Light)
+    }
+
     /// Returns the kinds of light for which an output holds layers.
     #[must_use]
     pub fn light_layers(&self) -> Vec<LightKind> {

@@ -1,6 +1,6 @@
 //! The `render` section of a scene, and the settings that follow from it.
 
-use crate::{ConePattern, Direction, GhostSpread, Lights, NumberFamily, Reflections, RenderSettings};
+use crate::{ConePattern, Direction, GhostSpread, Lights, NoiseLimit, NumberFamily, Reflections, RenderSettings};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use spectra_core::numbers::seed_of_frame;
@@ -17,13 +17,14 @@ pub(crate) struct RenderSection {
     /// from the imager. `auto` is `backward` if source and imager allow it, and `both` if that gives much less noise.
     #[serde(default)]
     direction: RequestedDirection,
-    /// Backward: samples per pixel, a whole number from 1 to 4194304; 64 if absent. With `noise`, the largest number of samples
-    /// per pixel; 8192 if absent.
+    /// Backward: samples per pixel, a whole number from 1 to 4194304. With `noise`, the largest number of samples per pixel; 8192 if
+    /// absent.
     samples: Option<Whole<1, MAX_SAMPLES>>,
     /// Noise at which rendering stops: standard deviation of a pixel relative to the mean around it, 0.01 % to 50 %, of luminance
-    /// or of the noisiest film layer. If absent, every pixel gets `samples`.
-    #[schemars(extend("minimum" = 0.0001, "maximum" = 0.5))]
-    noise: Option<Ratio>,
+    /// or of the noisiest film layer. `auto` is a third of the standard deviation of the film's grain there, which hides it, and
+    /// 1 % if there is no grain or if `output` asks for a file of the light. If absent, every pixel gets `samples`; if `samples`
+    /// and `rays` are absent as well, `auto`.
+    noise: Option<NoiseSection>,
     /// Forward: total number of rays, a whole number from 1 to 1e15; 4 x pixels x `samples` if absent. With both directions, the
     /// rays from the lights; 12 x `samples` for each pixel that they reach if absent.
     rays: Option<Whole<1, MAX_RAYS>>,
@@ -52,6 +53,24 @@ pub(crate) struct RenderSection {
     /// absent, only where lights are rendered separately and the star of the brightest pixel matters. A star matters if, just
     /// outside the neighboring pixels, it is brighter than 1 % of the median of the frame.
     diffraction: Option<bool>,
+}
+
+/// The forms in which `noise` can be written.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+enum NoiseSection {
+    /// Fraction of the light.
+    Of(#[schemars(extend("minimum" = 0.0001, "maximum" = 0.5))] Ratio),
+    /// The word `auto`.
+    Auto(AutoWord),
+}
+
+/// The word `auto` as the value of `noise`.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+enum AutoWord {
+    /// A third of the grain of the film, or 1 %.
+    Auto,
 }
 
 /// The forms in which `glare` can be written.
@@ -157,9 +176,17 @@ impl RenderSection {
         imager: &dyn Imager,
     ) -> Result<RenderSettings, Faults> {
         let mut faults = Faults::new();
-        let default = if self.noise.is_some() { DEFAULT_MOST_SAMPLES } else { DEFAULT_SAMPLES };
+        let is_bare = self.noise.is_none() && self.samples.is_none() && self.rays.is_none();
+        let noise = match self.noise {
+            Some(NoiseSection::Of(asked)) => Some(NoiseLimit::Fraction(asked.number())),
+            Some(NoiseSection::Auto(_)) => Some(NoiseLimit::Auto),
+            // Stratified numbers are laid out for all samples, so they cannot stop earlier.
+            None if is_bare && self.numbers != NumberFamily::Stratified => Some(NoiseLimit::Auto),
+            None => None,
+        };
+        let default = if noise.is_some() { DEFAULT_MOST_SAMPLES } else { DEFAULT_SAMPLES };
         let samples = self.samples.map_or(default, Whole::get);
-        if self.noise.is_some() && self.numbers == NumberFamily::Stratified {
+        if noise.is_some() && self.numbers == NumberFamily::Stratified {
             let fault = params.fault(
                 "numbers",
                 "`stratified` numbers need all of their samples, so rendering cannot stop at a noise level",
@@ -196,7 +223,7 @@ impl RenderSection {
             direction,
             lights,
             samples: samples as u32,
-            noise: self.noise.map(Ratio::number),
+            noise,
             rays,
             rays_stated: self.rays.is_some(),
             seed: frame.map_or(seed, |frame| seed_of_frame(seed, frame)),

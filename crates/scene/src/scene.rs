@@ -115,8 +115,8 @@ pub struct RenderSettings {
     pub lights: Lights,
     /// Backward: samples per pixel; with `noise`, the largest number.
     pub samples: u32,
-    /// Target noise, as a fraction of the light: parts of the picture that reach it get no more samples.
-    pub noise: Option<f64>,
+    /// Noise at which parts of the picture get no more samples; `None` if every pixel gets all of them.
+    pub noise: Option<NoiseLimit>,
     /// Forward: total number of rays.
     pub rays: u64,
     /// Whether the scene states the number of rays.
@@ -137,6 +137,15 @@ pub struct RenderSettings {
     pub glare: Option<StrayReflectances>,
     /// Whether diffraction at the edge of the aperture spreads the light. `None`: only if stars around lights would be visible.
     pub diffraction: Option<bool>,
+}
+
+/// How much noise a picture may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NoiseLimit {
+    /// Standard deviation of a pixel, as a fraction of the mean around it.
+    Fraction(f64),
+    /// A third of the standard deviation of the film's grain, or 1 % where no grain hides the noise.
+    Auto,
 }
 
 impl RenderSettings {

@@ -2,7 +2,7 @@
 
 use crate::SessionError;
 use spectra_core::params::Fault;
-use spectra_scene::{Member, Output, Scene};
+use spectra_scene::{FileContent, Member, Output, Scene};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -65,6 +65,12 @@ impl Names {
                 Err(SessionError::Request(Fault::new(format!("{stem}.{ending}: {text}")).hint(hint).to_string()))
             }
         }
+    }
+
+    /// Returns whether one file is asked for by its name, and it holds the light.
+    pub(crate) fn ask_for_light(&self, scene: &Scene) -> bool {
+        let holds_light = |output: &Arc<dyn Output>| output.content() == FileContent::Light;
+        self.is_one() && self.outputs(scene).is_ok_and(|outputs| outputs.iter().any(holds_light))
     }
 
     /// Returns whether one file is asked for by its name.

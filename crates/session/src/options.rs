@@ -13,10 +13,12 @@ pub struct SessionOptions {
     /// Effort of the search for the rays that pass the lens, and for those that frame and meters see. The bits of a draft differ
     /// from those of the picture.
     pub effort: Effort,
+    /// Whether the light itself is kept in a file that the scene does not name.
+    pub keeps_light: bool,
 }
 
 impl Default for SessionOptions {
     fn default() -> Self {
-        Self { isa: Isa::detect(), picture: 0, effort: Effort::Full }
+        Self { isa: Isa::detect(), picture: 0, effort: Effort::Full, keeps_light: false }
     }
 }

@@ -50,7 +50,7 @@ impl Report<'_> {
             "rays_per_second": self.rays_per_second(),
             "detected": rendering.detected,
             "noise": rendering.noise.map(|n| json!({
-                "asked": n.asked, "median": n.median, "p95": n.p95, "worst": n.worst, "clean": n.clean,
+                "asked": n.asked, "by_grain": n.by_grain, "median": n.median, "p95": n.p95, "worst": n.worst, "clean": n.clean,
             })),
             "lost": self.lost(),
             "ledger": rendering.ledger.as_ref().map(|ledger| self.ledger(ledger)),

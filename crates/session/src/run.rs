@@ -29,6 +29,7 @@ pub(crate) fn picture(
     let mut session = Session::new(job.series.clone(), SessionOptions { isa: job.isa, ..SessionOptions::default() })?;
     let member = session.member();
     let whole = PictureFiles::of(&job.names, session.scene(), &member)?;
+    session.keep_light(job.names.ask_for_light(session.scene()));
     // Checked before any folder is made, so that a scene that does not fit into memory leaves none behind.
     fits(&session, host)?;
     host.hear(Event::Preparing);

@@ -74,6 +74,11 @@ impl Session {
         self.options
     }
 
+    /// Says before the scene is prepared whether the light itself is kept in a file that the scene does not name.
+    pub(crate) fn keep_light(&mut self, keeps: bool) {
+        self.options.keeps_light = keeps;
+    }
+
     /// The assembled scene of the picture.
     #[must_use]
     pub fn scene(&self) -> &Arc<Scene> {
@@ -133,6 +138,7 @@ impl Session {
                 isa: self.options.isa,
                 density,
                 effort: self.options.effort,
+                keeps_light: self.options.keeps_light,
                 workers,
                 ..RenderOptions::default()
             },

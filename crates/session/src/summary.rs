@@ -6,7 +6,7 @@ use spectra_core::params::{Node, Value};
 use spectra_core::{Loss, shutter};
 use spectra_darkroom::is_picture;
 use spectra_render::GhostNoise;
-use spectra_scene::FilmTime;
+use spectra_scene::{FilmTime, NoiseLimit};
 use std::path::Path;
 
 /// Causes of loss that the summary names. Rays that the lens itself stops are not among them. Rays are aimed at a region a little
@@ -100,7 +100,14 @@ fn of(report: &Report<'_>) -> String {
     }
     if let Some(noise) = rendering.noise {
         let (median, p95) = (spectra_render::percent(noise.median), spectra_render::percent(noise.p95));
-        text.push_str(&format!(", noise {median} (95 % of the frame below {p95})"));
+        let asked = match (scene.render.noise, noise.by_grain) {
+            (Some(NoiseLimit::Auto), true) => {
+                format!("; asked: a third of the film's grain, {}", spectra_render::percent(noise.asked))
+            }
+            (Some(NoiseLimit::Auto), false) => format!("; asked: {}", spectra_render::percent(noise.asked)),
+            _ => String::new(),
+        };
+        text.push_str(&format!(", noise {median} (95 % of the frame below {p95}{asked})"));
     }
     if let Some(meaning) = scene.source.meaning() {
         text.push_str(&format!("; {meaning}"));

@@ -16,7 +16,7 @@ use spectra_core::frame::{
 use spectra_core::math::pow;
 use spectra_core::params::{Fault, Faults, Params, Positive};
 use spectra_core::registry::Context;
-use spectra_core::stage::{Film, Misexposure, Negative};
+use spectra_core::stage::{Film, GrainNoise, Misexposure, Negative};
 use spectra_film::develop::{Effects, develop};
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
@@ -175,7 +175,7 @@ impl StockFilm {
     fn planes(&self, exposure: &ExposureFrame, kept: bool) -> Result<DevelopedPlanes, Fault> {
         let metered = self.camera.meter.factor(exposure);
         let effect = self.reciprocity_effect(metered);
-        let breathing = self.frame.as_ref().map_or(1.0, FrameEffects::exposure);
+        let breathing = self.breathing();
         let factor = metered * effect * breathing;
         let gate = raster(&self.effects, exposure.size)?;
         let laid = self.frame.as_ref().map(|frame| frame.laid(&gate));
@@ -201,6 +201,11 @@ impl StockFilm {
         let light = self.light(exposure)?;
         let amounts = develop(&self.emulsion, &self.effects, &light, factor, [&gate, &raster], lay, soil)?;
         Ok(DevelopedPlanes { amounts, exposed, raster, laid })
+    }
+
+    /// Returns the factor by which flicker changes the exposure of the frame.
+    fn breathing(&self) -> f64 {
+        self.frame.as_ref().map_or(1.0, FrameEffects::exposure)
     }
 
     /// Returns how much the exposure of a frame counts, relative to a short one, if the meter lengthens it by the factor `metered`.
@@ -292,6 +297,14 @@ pub(crate) fn layer_of(group: &str, layer: &str, unit: &str, values: Vec<f32>) -
 
 impl Film for StockFilm {
     exposed_by_camera!();
+
+    fn grain_noise(&self, metered: &ExposureFrame) -> Option<Vec<GrainNoise>> {
+        let factor = self.camera.meter.factor(metered);
+        let factor = factor * self.reciprocity_effect(factor) * self.breathing();
+        let pitch_mm = raster(&self.effects, metered.size).ok()?.pitch_mm;
+        let layers = 0..self.emulsion.layers();
+        layers.map(|layer| self.effects.grain_noise(layer, &self.emulsion, factor, pitch_mm)).collect()
+    }
 
     fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {
         if let Some(frame) = &self.frame {

@@ -11,7 +11,7 @@ use spectra_core::names;
 use spectra_core::params::{Fault, Faults, Params, Positive as AboveZero};
 use spectra_core::registry::Context;
 use spectra_core::spectral::{BAND, Channel};
-use spectra_core::stage::Film;
+use spectra_core::stage::{Film, GrainNoise};
 use spectra_film::develop::{Effects, develop};
 use spectra_film::display::channel;
 use spectra_film::emulsion::Emulsion;
@@ -124,6 +124,11 @@ impl ThreeStrip {
 }
 
 impl ThreeStrip {
+    /// Returns how much the exposure of record `i` counts, relative to a short one, if the meter lengthens it by the factor `metered`.
+    fn reciprocity_effect(&self, i: usize, metered: f64) -> f64 {
+        self.reciprocity[i].as_ref().map_or(1.0, |r| r.effect(self.camera.settings.time_s * metered))
+    }
+
     /// Develops the three negatives and returns their densities, one plane each, in the order blue, green, red.
     ///
     /// # Errors
@@ -141,7 +146,6 @@ impl ThreeStrip {
     ) -> Result<Vec<Vec<f32>>, Fault> {
         let factor = self.camera.meter.factor(exposure);
         let raster = raster(&self.effects[BLUE], exposure.size)?;
-        let time_s = self.camera.settings.time_s * factor;
         let mut negatives = Vec::new();
         for (i, name) in RECORDS.iter().enumerate() {
             let mut light = &channel(exposure, name).map_err(|error| error.to_string())?.values[..];
@@ -150,7 +154,7 @@ impl ThreeStrip {
                 behind = self.effects[BLUE].scattered(0, light, &raster)?;
                 light = &behind;
             }
-            let factor_of_record = factor * self.reciprocity[i].as_ref().map_or(1.0, |r| r.effect(time_s));
+            let factor_of_record = factor * self.reciprocity_effect(i, factor);
             let lay = |_, plane: Vec<f32>| {
                 exposed(name, &plane, factor);
                 plane
@@ -272,6 +276,16 @@ impl Film for ThreeStrip {
 
     fn long_exposure_warning(&self, time_s: f64) -> Option<String> {
         unknown_reciprocity(None, &self.unknown, time_s).filter(|_| !self.unknown.is_empty())
+    }
+
+    fn grain_noise(&self, metered: &ExposureFrame) -> Option<Vec<GrainNoise>> {
+        let factor = self.camera.meter.factor(metered);
+        let pitch_mm = raster(&self.effects[BLUE], metered.size).ok()?.pitch_mm;
+        let of_record = |i: usize| {
+            let factor = factor * self.reciprocity_effect(i, factor);
+            self.effects[i].grain_noise(0, &self.developed[i], factor, pitch_mm)
+        };
+        (0..RECORDS.len()).map(of_record).collect()
     }
 
     fn check_frame(&self, size: &FrameSize) -> Result<(), [String; 2]> {

@@ -124,7 +124,7 @@ pub(crate) struct Viewing {
         floating point holds light and is metered as by a camera. --exposure shifts either. Scatter, halation, adjacency, grain \
         and the print, scan or projection are the same as in a scene with this stock. Without --lens no ray is traced: each pixel \
         of the picture exposes the same pixel of the film. With --lens the picture stands 3 m in front of that lens, which is wide \
-        open unless --f-number says otherwise, and is rendered to 1 % noise.\n\n\
+        open unless --f-number says otherwise, and is rendered until the grain of the film hides its noise.\n\n\
         PICTURE is an OpenEXR, PNG, JPEG, TIFF, WebP, BMP or Radiance HDR file. Several pictures, a folder, or a numbered sequence \
         (plate.####.exr, plate.%04d.exr) are developed one by one, each with grain of its own. All are exposed like the first one, \
         unless --meter each meters each of them. -o is then a folder, or a sequence such as out/####.tiff. A picture that fails does \
@@ -157,8 +157,8 @@ pub(crate) struct FilmDevelop {
     /// Aperture of the lens (f/4); wide open if not given.
     #[arg(long, value_name = "F", requires = "lens")]
     pub f_number: Option<String>,
-    /// Noise at which a render through the lens stops; 1% if not given.
-    #[arg(long, value_name = "PERCENT", requires = "lens", value_parser = percent)]
+    /// Noise at which a render through the lens stops (1%), or `auto`, the default: a third of the grain, 1 % without grain.
+    #[arg(long, value_name = "NOISE", requires = "lens", value_parser = percent)]
     pub noise: Option<String>,
     #[command(flatten)]
     pub keys: FilmKeys,

@@ -198,9 +198,7 @@ impl Grain {
         if layouts.iter().any(|layout| layout.columns.taps() > MOST_TAPS) {
             return;
         }
-        // Variance of a pixel if the variance times the area of large areas is 1 mm^2.
-        let variance: f32 =
-            layouts.iter().map(|l| l.weight * l.weight * l.columns.mean_square() * l.columns.mean_square()).sum();
+        let variance = pixel_variance(&layouts);
         let alone = (variance * (raster.pitch_mm * raster.pitch_mm) as f32).min(1.0);
         let made = || Pixels::new(self.counts, alone, |density| self.per_amount(density) * variance);
         let key = (self.per_amount.clone(), [self.steps_a_unit.to_bits(), variance.to_bits(), alone.to_bits()]);
@@ -218,6 +216,14 @@ impl Grain {
         );
     }
 
+    /// Returns the standard deviation of the density of pixels with the side `pitch_mm`, where the density above base and fog is `amount`.
+    #[must_use]
+    pub fn deviation(&self, amount: f64, pitch_mm: f64) -> f64 {
+        let raster = Raster::new(TILE, 1, pitch_mm);
+        let variance = f64::from(pixel_variance(&[0, 1].map(|part| self.layout(part, &raster))));
+        (f64::from(self.per_amount(amount.max(0.0) as f32)) * variance * amount.max(0.0)).sqrt()
+    }
+
     /// Chooses the level of a part whose cells suit a pixel, and computes the cells that each column of pixels takes.
     fn layout(&self, part: usize, raster: &Raster) -> Layout {
         let GrainComponent { share, cell_mm, .. } = &self.parts[part];
@@ -231,6 +237,11 @@ impl Grain {
         let columns = Taps::new(raster.offset_px[0], raster.width, cells_a_pixel);
         Layout { level, cells_a_pixel, weight: (share.sqrt() / cell_mm) as f32, columns }
     }
+}
+
+/// Returns the variance of a pixel if the variance times the area of large areas is 1 mm^2, 1/mm^2.
+fn pixel_variance(layouts: &[Layout; 2]) -> f32 {
+    layouts.iter().map(|l| l.weight * l.weight * l.columns.mean_square() * l.columns.mean_square()).sum()
 }
 
 /// Position of a part's cells under the pixels.

@@ -1,21 +1,11 @@
 //! Halation of the bundled stocks in the film process.
 
+use crate::film::build;
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
-use spectra_core::registry::Context;
-use spectra_core::resources::Resources;
-use spectra_core::spectral::BAND;
 use spectra_core::stage::Film;
 use spectra_film::stock::{Process, Stock};
 use spectra_plugin_films::StockFilm;
 use spectra_scene::FileResources;
-
-fn build(yaml: &str) -> StockFilm {
-    let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("film.yaml"), yaml).expect("written");
-    let resources = FileResources::beside(folder.path());
-    let params = resources.document("film.yaml", &[], &[]).expect("YAML");
-    StockFilm::build(&params, &Context::new(&resources, BAND)).unwrap_or_else(|faults| panic!("{yaml}: {faults}"))
-}
 
 const SIDE: u32 = 201;
 const PITCH_MM: f64 = 0.006;

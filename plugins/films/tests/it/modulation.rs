@@ -1,22 +1,11 @@
 //! Edges in the film process: comparison of the developed film with the MTF on the data sheet.
 
+use crate::film::build;
 use spectra_core::frame::{ExposureChannel, ExposureFrame, FrameSize};
-use spectra_core::registry::Context;
-use spectra_core::resources::Resources;
-use spectra_core::spectral::BAND;
 use spectra_core::stage::Film;
 use spectra_film::print::metered_exposure_lx_s;
 use spectra_plugin_films::StockFilm;
-use spectra_scene::FileResources;
 use std::f64::consts::PI;
-
-fn build(yaml: &str) -> StockFilm {
-    let folder = tempfile::tempdir().expect("a folder");
-    std::fs::write(folder.path().join("film.yaml"), yaml).expect("written");
-    let resources = FileResources::beside(folder.path());
-    let params = resources.document("film.yaml", &[], &[]).expect("YAML");
-    StockFilm::build(&params, &Context::new(&resources, BAND)).unwrap_or_else(|faults| panic!("{yaml}: {faults}"))
-}
 
 /// Returns a frame of square pixels that has the exposure `value(column, row)` in every channel.
 fn frame(film: &StockFilm, [width, height]: [u32; 2], pitch_mm: f64, value: impl Fn(u32, u32) -> f64) -> ExposureFrame {
