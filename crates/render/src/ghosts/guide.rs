@@ -173,9 +173,9 @@ impl Lit {
         }
     }
 
-    /// Whether no light came through, but rays passed some surfaces.
-    pub fn is_on_the_way(&self) -> bool {
-        !self.went.is_empty() && !self.cells.contains(&true)
+    /// Whether no light came through in any of these zones, but rays passed some surfaces.
+    pub fn are_on_the_way(zones: &[Self]) -> bool {
+        zones.iter().any(|zone| !zone.went.is_empty()) && !zones.iter().any(|zone| zone.cells.contains(&true))
     }
 
     /// Returns a uniform guide for the smallest part that holds the cells through which light came, and their neighbors. If none came, it
@@ -273,13 +273,13 @@ mod tests {
                     came[round as usize] += 1;
                 }
             }
-            assert_eq!(lit.is_on_the_way(), came[round as usize] == 0);
+            assert_eq!(Lit::are_on_the_way(std::slice::from_ref(&lit)), came[round as usize] == 0);
             guide = lit.closer();
         }
         assert!(came[0] == 0 && came[4] > n / 4, "{came:?}");
         // No ray passed anything, so it is unknown where to look.
         let blocked = Lit::of(&guide);
-        assert!(!blocked.is_on_the_way());
+        assert!(!Lit::are_on_the_way(std::slice::from_ref(&blocked)));
         assert_eq!(blocked.closer().part(), FrontRect::ALL);
     }
 

@@ -4,8 +4,8 @@
 //! depth is traversed). Places are therefore drawn once and shared by all paths, and only rays that come through are evaluated. In the
 //! first round all paths share the directions, too; this round tells whether to go on.
 //!
-//! Three to six rounds find where light enters. In four further rounds rays are shared out as those of the picture will be, each round
-//! better than the one before. Cells of the front get rays by the root of the mean square of what they bring, as a fraction of the ghosts'
+//! Three to six rounds find where light enters. In two further rounds rays are shared out as those of the picture will be, the second better
+//! than the first. Cells of the front get rays by the root of the mean square of what they bring, as a fraction of the ghosts'
 //! light in its block of 32 x 32 pixels. The rays of all rounds form one set, as dense as they are together.
 
 use super::guide::{Aim, Guide, Lit};
@@ -26,18 +26,19 @@ use spectra_core::{Loss, RayBatch};
 const RAYS: usize = 4096;
 /// Number of rays for each path and round that each further zone adds.
 const RAYS_MORE: usize = 256;
-/// Number of rounds at least. There are more while any zone has rays that passed some surfaces but none that passed all.
+/// Number of rounds of a path at least. There are more while some rays passed some surfaces but none passed all.
 const LEAST_ROUNDS: u64 = 3;
+/// Number of rounds in which zones add rays. Later ones look closer at a narrow entrance, which all zones share.
+const ZONE_ROUNDS: u64 = 2;
 /// Number of rounds at most.
 const ROUNDS: u64 = 6;
-/// Number of further rounds, which find where noise is. Their rays are shared out like those of the picture, each round better than the one
-/// before.
-const SHARED: u64 = 4;
+/// Number of further rounds, which find where noise is. Their rays are shared out like those of the picture.
+const SHARED: u64 = 2;
 /// Number of rays of each further round, as a fraction of those of a sample.
-const SHARED_RAYS: f64 = 0.16;
+const SHARED_RAYS: f64 = 0.32;
 /// Largest number of rays of each further round. It does not depend on the number of samples, because otherwise a picture that is continued
 /// would be a different one.
-const SHARED_MOST: f64 = (3_u64 << 17) as f64;
+const SHARED_MOST: f64 = (3_u64 << 18) as f64;
 /// Number of streams of random numbers of each path.
 const STREAMS: u64 = ROUNDS + SHARED;
 /// Divisor for the rays of paths of more than two reflections, which are many and have little light.
@@ -164,19 +165,18 @@ pub(super) fn search(
     let closer = |lit: &[Lit]| -> Vec<Guide> { lit.iter().map(Lit::closer).collect() };
     let mut sights = map_pieces(workers, ways.len(), fresh, |state, at| {
         wanted(workers)?;
-        let mut guides = closer(&first[at].0);
-        let batches = of(&ways[at], all);
+        let (mut guides, mut sight) = (closer(&first[at].0), PilotRays::default());
         for round in 1..ROUNDS {
+            let most = if round < ZONE_ROUNDS { all } else { all.min(RAYS / BATCH) };
+            let batches = of(&ways[at], most);
             let (lit, came) = pilot.round(state, &ways[at], &guides, Some(stream(at, round)), batches);
-            let done = round + 1;
-            if done == ROUNDS || done >= LEAST_ROUNDS && !lit.iter().any(Lit::is_on_the_way) {
-                let mut sight = PilotRays::default();
-                sight.add(guides, (batches * BATCH) as f64, came);
-                return Ok::<_, RenderError>(sight);
+            let next = closer(&lit);
+            sight.add(std::mem::replace(&mut guides, next), (batches * BATCH) as f64, came);
+            if round + 1 >= LEAST_ROUNDS && !Lit::are_on_the_way(&lit) {
+                break;
             }
-            guides = closer(&lit);
         }
-        Ok(PilotRays::default())
+        Ok::<_, RenderError>(sight)
     })?;
     let divisor = ghosts.pipeline.search_divisor() as f64;
     for round in 0..SHARED {
