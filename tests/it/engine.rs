@@ -8,7 +8,7 @@ use spectra_core::spectral::SpectralPower;
 use spectra_core::stage::{Radiance, Source};
 use spectra_core::{Loss, RayBatch};
 use spectra_plugins as _;
-use spectra_render::{Control, RenderError, RenderOptions, Renderer, Rendering, Threads};
+use spectra_render::{Control, Effort, RenderError, RenderOptions, Renderer, Rendering, Threads};
 use spectra_scene::Scene;
 use std::path::Path;
 use std::sync::Arc;
@@ -270,6 +270,26 @@ fn a_reseeded_renderer_has_the_bits_of_a_new_one() {
         assert_eq!(first.reseeded(3).scene().render.seed, 3);
         assert!(bits(&rendered(&first)) != bits(&want), "{scene} {settings:?}: the seed has no effect");
     }
+}
+
+/// The renderer of a frame serves the next one if lens and lights stand still, and gives it the bits that it has alone. It does not serve a
+/// picture whose rays differ in more than the seed.
+#[test]
+fn the_search_of_a_frame_serves_the_next() {
+    let options = RenderOptions::default();
+    let set = [SMALL, "render.samples=2", "lens.file=zeiss-biotar-50-f1.4"];
+    let first = ready(load("bench/noise-lights.yaml", &set));
+    let mut next = first.scene().with_seed(9);
+    next.render.frame = Some(17);
+    let (next, mut other) = (Arc::new(next.clone()), next);
+    let taken = first.for_picture(&next, &options).expect("only the seed differs");
+    assert!(bits(&rendered(&taken)) == bits(&rendered(&ready(Scene::clone(&next)))));
+    other.render.reflections.order = Some(4);
+    assert!(first.for_picture(&Arc::new(other), &options).is_none());
+    // A scene that is loaded anew does not share the stages.
+    assert!(first.for_picture(&Arc::new(load("bench/noise-lights.yaml", &set)), &options).is_none());
+    let draft = RenderOptions { effort: Effort::Draft, ..RenderOptions::default() };
+    assert!(first.for_picture(&next, &draft).is_none());
 }
 
 /// Film with few rays causes a warning: empty pixels among others are a bias, not a picture.

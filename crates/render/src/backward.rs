@@ -29,7 +29,7 @@ use spectra_core::frame::FrameSize;
 use spectra_core::numbers::{Numbers, SampleSpan, StageKey};
 use spectra_core::stage::{Launch, Radiance};
 use spectra_optics::{AimPart, RIM_EVERY, RearPupil};
-use spectra_scene::LightKind;
+use spectra_scene::{LightKind, Scene};
 use spectra_tracer::Travel;
 use std::ops::Range;
 use std::sync::Arc;
@@ -389,9 +389,9 @@ impl Estimator for Backward {
         self.tiling().number_of(pixel) as usize
     }
 
-    fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
-        let checks = self.checks.map(|_| self.check_pixels(picture));
-        Box::new(Self { pipeline: Arc::new(self.pipeline.of_seed(picture)), checks, ..self.with_seed(seed) })
+    fn reseeded(&self, picture: &Arc<Scene>, seed: u64) -> Box<dyn Estimator> {
+        let checks = self.checks.map(|_| self.check_pixels(picture.render.seed));
+        Box::new(Self { pipeline: Arc::new(self.pipeline.of_picture(picture)), checks, ..self.with_seed(seed) })
     }
 
     fn in_check_pixels(&self) -> Option<Box<dyn Estimator>> {

@@ -3,8 +3,9 @@
 use crate::pipeline::ThreadState;
 use crate::sums::ExactSums;
 use crate::{Done, RenderError, Workers};
-use spectra_scene::LightKind;
+use spectra_scene::{LightKind, Scene};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A way to estimate the exposure or a part of it. The light of all estimators of a scene is added up.
 ///
@@ -15,8 +16,9 @@ use std::ops::Range;
 ///
 /// ```
 /// use spectra_render::{Done, Estimator, ExactSums, RenderError, Scratch, UnitResult, Workers};
-/// use spectra_scene::LightKind;
+/// use spectra_scene::{LightKind, Scene};
 /// use std::ops::Range;
+/// use std::sync::Arc;
 ///
 /// /// Fog with the same irradiance in every pixel and channel.
 /// #[derive(Clone)]
@@ -39,7 +41,7 @@ use std::ops::Range;
 ///     fn tile_of(&self, _pixel: usize) -> usize {
 ///         0
 ///     }
-///     fn reseeded(&self, _picture: u64, _seed: u64) -> Box<dyn Estimator> {
+///     fn reseeded(&self, _picture: &Arc<Scene>, _seed: u64) -> Box<dyn Estimator> {
 ///         Box::new(self.clone())
 ///     }
 ///     fn units(&self, _samples: &Range<u64>, tiles: &[u32]) -> u64 {
@@ -85,9 +87,9 @@ pub trait Estimator: Send + Sync {
     /// Returns the number of the tile that holds a pixel.
     fn tile_of(&self, pixel: usize) -> usize;
 
-    /// Returns a copy that draws its samples from the random numbers of `seed`, for the picture with seed `picture`. What was found and
-    /// decided before the first ray is shared.
-    fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator>;
+    /// Returns a copy that draws its samples from the random numbers of `seed`, for a picture whose rays differ in the seed only. What was
+    /// found and decided before the first ray is shared.
+    fn reseeded(&self, picture: &Arc<Scene>, seed: u64) -> Box<dyn Estimator>;
 
     /// Returns a copy that traces the check pixels alone, one in eight, so that the noise can be judged by a second sequence there. Its sums
     /// are numbered by check pixels, and its tiles are the same. `None` if light may land anywhere: such light is divided into halves.

@@ -24,7 +24,7 @@ use spectra_core::batch::pixel_and_channel;
 use spectra_core::numbers::{Dimension, Numbers, StageKey};
 use spectra_core::stage::{Emit, Receive};
 use spectra_optics::{AimPattern, FrontPupil};
-use spectra_scene::{ConePattern, LightKind};
+use spectra_scene::{ConePattern, LightKind, Scene};
 use spectra_tracer::Travel;
 use std::ops::Range;
 use std::sync::Arc;
@@ -403,9 +403,9 @@ impl Estimator for Forward {
         0
     }
 
-    fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
+    fn reseeded(&self, picture: &Arc<Scene>, seed: u64) -> Box<dyn Estimator> {
         let (numbers, cone) = Self::numbers(&self.pipeline, seed);
-        let (pipeline, pupil) = (Arc::new(self.pipeline.of_seed(picture)), self.pupil.clone());
+        let (pipeline, pupil) = (Arc::new(self.pipeline.of_picture(picture)), self.pupil.clone());
         let (spots, haze, scale, a_sample) = (self.spots.clone(), self.haze.clone(), self.scale, self.a_sample);
         Box::new(Self { pipeline, pupil, numbers, cone, spots, haze, scale, a_sample })
     }

@@ -9,6 +9,7 @@ use crate::estimator::Estimator;
 use crate::light::{EstimatorSums, Light};
 use spectra_core::numbers::mix64;
 use spectra_scene::Scene;
+use std::sync::Arc;
 
 /// The samples of its kind of light that a part traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +45,7 @@ pub(crate) struct Parts {
 
 impl Parts {
     /// Makes the parts of a scene from its estimators, one for each kind of light.
-    pub fn new(scene: &Scene, estimators: Vec<Box<dyn Estimator>>) -> Self {
+    pub fn new(scene: &Arc<Scene>, estimators: Vec<Box<dyn Estimator>>) -> Self {
         let (kinds, checks) = (estimators.len(), CheckPixels::of(scene.imager.size(), scene.render.seed));
         if scene.render.noise.is_none() {
             let all = estimators.into_iter().map(|estimator| Part { estimator, role: Role::All }).collect();
@@ -52,23 +53,24 @@ impl Parts {
         }
         let seed = scene.render.seed;
         let second = |estimator: &dyn Estimator| match estimator.in_check_pixels() {
-            Some(check) => Part { estimator: check.reseeded(seed, seed_of(seed, Role::Check, 1)), role: Role::Check },
-            None => Part { estimator: estimator.reseeded(seed, seed_of(seed, Role::Half, 1)), role: Role::Half },
+            Some(check) => Part { estimator: check.reseeded(scene, seed_of(seed, Role::Check, 1)), role: Role::Check },
+            None => Part { estimator: estimator.reseeded(scene, seed_of(seed, Role::Half, 1)), role: Role::Half },
         };
         let seconds: Vec<Part> = estimators.iter().map(|estimator| second(&**estimator)).collect();
         let first = |(estimator, second): (Box<dyn Estimator>, &Part)| match second.role {
-            Role::Half => Part { estimator: estimator.reseeded(seed, seed_of(seed, Role::Half, 0)), role: Role::Half },
+            Role::Half => Part { estimator: estimator.reseeded(scene, seed_of(seed, Role::Half, 0)), role: Role::Half },
             _ => Part { estimator, role: Role::All },
         };
         let firsts: Vec<Part> = estimators.into_iter().zip(&seconds).map(first).collect();
         Self { all: firsts.into_iter().chain(seconds).collect(), kinds, checks }
     }
 
-    /// Returns the same parts for the picture of another seed.
-    pub fn reseeded(&self, seed: u64) -> Self {
+    /// Returns the same parts for a picture whose rays differ in the seed only.
+    pub fn of_picture(&self, picture: &Arc<Scene>) -> Self {
+        let seed = picture.render.seed;
         let reseed = |(at, part): (usize, &Part)| {
             let own = seed_of(seed, part.role, (at / self.kinds) as u64);
-            Part { estimator: part.estimator.reseeded(seed, own), role: part.role }
+            Part { estimator: part.estimator.reseeded(picture, own), role: part.role }
         };
         let all = self.all.iter().enumerate().map(reseed).collect();
         Self { all, kinds: self.kinds, checks: self.checks.reseeded(seed) }

@@ -43,7 +43,7 @@ impl SourcePart {
 #[derive(Clone)]
 pub struct Pipeline {
     pub(crate) scene: Arc<Scene>,
-    /// Seed of the picture: that of the scene, unless the renderer was reseeded.
+    /// Seed of the picture.
     pub(crate) seed: u64,
     /// The part of the source's light that is traced.
     pub(crate) share: SourcePart,
@@ -106,9 +106,9 @@ impl Pipeline {
         Self { share, density, responses: Responses::new(self.scene.grid, &system.channels), ..self.clone() }
     }
 
-    /// Returns a copy for a picture of another seed.
-    pub(crate) fn of_seed(&self, seed: u64) -> Self {
-        Self { seed, ..self.clone() }
+    /// Returns a copy for a picture whose rays differ in the seed only.
+    pub(crate) fn of_picture(&self, picture: &Arc<Scene>) -> Self {
+        Self { scene: Arc::clone(picture), seed: picture.render.seed, ..self.clone() }
     }
 
     /// Returns the channels in which noise is measured, by their position among the recorded ones: luminance (`Y`) if there is one, else

@@ -15,7 +15,7 @@ use crate::pipeline::{Pipeline, ThreadState};
 use crate::rendering::{GhostNoise, Rendering};
 use crate::sums::{ExactSums, LARGEST_CONTRIBUTION, LARGEST_EXPECTED, PILOT_RAYS};
 use crate::veil::{self};
-use crate::{Control, RenderError, RenderOptions, SingleThread, Workers, diffracted, star_trial};
+use crate::{Control, RenderError, RenderOptions, SingleThread, Traced, Workers, diffracted, star_trial};
 use spectra_core::LossCounts;
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::stage::WavelengthDensity;
@@ -78,12 +78,26 @@ impl Renderer {
     /// searched and decided before the first ray does not depend on the seed and is shared, so this costs next to nothing.
     #[must_use]
     pub fn reseeded(&self, seed: u64) -> Self {
-        let mut scene = (*self.scene).clone();
-        scene.render.seed = seed;
+        self.of_picture(Arc::new(self.scene.with_seed(seed)))
+    }
+
+    /// Returns a renderer for another picture, with the same bits as [`Renderer::new`], at next to no cost. `None` if more than its seed and
+    /// what follows the light differ, so that it must be prepared anew.
+    #[must_use]
+    pub fn for_picture(&self, picture: &Arc<Scene>, options: &RenderOptions<'_>) -> Option<Self> {
+        let is_same = options.isa == self.pipeline.isa
+            && options.effort == self.pipeline.effort
+            && options.traced == Traced::All
+            && self.scene.differs_in_seed_only(picture);
+        let keeps_light = options.keeps_light || picture.names_light_output();
+        is_same.then(|| Self { keeps_light, ..self.of_picture(Arc::clone(picture)) })
+    }
+
+    fn of_picture(&self, picture: Arc<Scene>) -> Self {
         Self {
-            parts: self.parts.reseeded(seed),
-            scene: Arc::new(scene),
-            pipeline: Arc::new(self.pipeline.of_seed(seed)),
+            parts: self.parts.of_picture(&picture),
+            pipeline: Arc::new(self.pipeline.of_picture(&picture)),
+            scene: picture,
             ledger: self.ledger.clone(),
             has_lights: self.has_lights,
             is_star_seen: self.is_star_seen.clone(),

@@ -13,7 +13,9 @@ use crate::pipeline::Pipeline;
 use crate::sums::ExactSums;
 use crate::{Done, RenderError, diffracted};
 use spectra_core::frame::FrameSize;
+use spectra_scene::Scene;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Fraction of the median of the frame above which a star is seen.
 const SEEN: f64 = crate::ghosts::MATTERS;
@@ -43,6 +45,11 @@ pub(crate) fn is_star_seen(
     Ok(stars.filter(|star| !star.is_nan()).fold(0.0, f64::max) > SEEN)
 }
 
+/// Returns the scene with the seed of the pilot.
+fn of_pilot(pipeline: &Pipeline) -> Arc<Scene> {
+    Arc::new(pipeline.scene.with_seed(PILOT_SEED))
+}
+
 /// Allocates sums for all the light of one estimator.
 fn new_sums(pipeline: &Pipeline) -> Result<ExactSums, RenderError> {
     let cells = pipeline.scene.imager.size().pixels() * pipeline.recorded.len();
@@ -53,7 +60,7 @@ fn new_sums(pipeline: &Pipeline) -> Result<ExactSums, RenderError> {
 pub(crate) fn medians(pipeline: &Pipeline, rest: &dyn Estimator) -> Result<Vec<f64>, RenderError> {
     let (all, channels) = (rest.tiles(), pipeline.recorded.len());
     let tiles: Vec<u32> = (0..all.min(TILES)).map(|i| (i * all / all.min(TILES)) as u32).collect();
-    let (trial, samples) = (rest.reseeded(PILOT_SEED, PILOT_SEED), 0..SAMPLES);
+    let (trial, samples) = (rest.reseeded(&of_pilot(pipeline), PILOT_SEED), 0..SAMPLES);
     let (sums, mut scratch) = (new_sums(pipeline)?, trial.scratch());
     for unit in 0..trial.units(&samples, &tiles) {
         trial.run(&samples, &tiles, unit, &mut scratch, &sums);
@@ -72,7 +79,7 @@ pub(crate) fn medians(pipeline: &Pipeline, rest: &dyn Estimator) -> Result<Vec<f
 
 /// Returns the light of the brightest pixel in each channel, W/m2.
 fn peaks(pipeline: &Pipeline, lights: &dyn Estimator) -> Result<Vec<f64>, RenderError> {
-    let trial = lights.reseeded(PILOT_SEED, PILOT_SEED);
+    let trial = lights.reseeded(&of_pilot(pipeline), PILOT_SEED);
     let most = u64::from(pipeline.scene.render.samples);
     let mut samples = 0..1;
     while trial.rays(&samples, &[0]) < LIGHT_RAYS && samples.end < most {

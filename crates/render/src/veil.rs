@@ -29,7 +29,7 @@ use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Radiance};
 use spectra_core::workers::map_pieces;
 use spectra_optics::FrontOpening;
-use spectra_scene::LightKind;
+use spectra_scene::{LightKind, Scene};
 use spectra_tracer::{Interior, Particle, StrayReflectances, WalkNumbers, Walker};
 use std::ops::Range;
 use std::sync::Arc;
@@ -429,9 +429,9 @@ impl Estimator for Veil {
         0
     }
 
-    fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
+    fn reseeded(&self, picture: &Arc<Scene>, seed: u64) -> Box<dyn Estimator> {
         let numbers = self.pipeline.numbers(mix64(seed ^ SEED));
-        let pipeline = Arc::new(self.pipeline.of_seed(picture));
+        let pipeline = Arc::new(self.pipeline.of_picture(picture));
         Box::new(Self { pipeline, plan: self.plan.clone(), numbers, seed, scale: self.scale })
     }
 

@@ -10,7 +10,7 @@ use crate::focus::FocusLight;
 use crate::frame_view::ViewSearch;
 use crate::landing;
 use crate::lens_section::ConfiguredLens;
-use crate::{Scene, SceneFilm};
+use crate::{RenderSettings, Scene, SceneFilm};
 use spectra_core::cover::CoverStack;
 use spectra_core::params::{Fault, Node, Params, Value};
 use spectra_core::stage::{Imager, Source, WavelengthSampler};
@@ -139,6 +139,32 @@ impl<'a> ReusableStages<'a> {
     /// Takes the messages of the stages that are left.
     pub(crate) fn take_messages(&mut self) -> BuildMessages {
         std::mem::take(&mut self.said)
+    }
+}
+
+impl Scene {
+    /// Returns a copy with another seed.
+    #[must_use]
+    pub fn with_seed(&self, seed: u64) -> Self {
+        let mut scene = self.clone();
+        scene.render.seed = seed;
+        scene
+    }
+
+    /// Returns whether rays of `other` differ from those of this scene in their seed only: both share the stages up to the imager. Films
+    /// may differ if they record the same channels.
+    #[must_use]
+    pub fn differs_in_seed_only(&self, other: &Self) -> bool {
+        let settings = |scene: &Self| RenderSettings { seed: 0, frame: None, ..scene.render };
+        Arc::ptr_eq(&self.source, &other.source)
+            && Arc::ptr_eq(&self.sampler, &other.sampler)
+            && Arc::ptr_eq(&self.lens, &other.lens)
+            && same_section(&self.params, &other.params, "imager")
+            && self.imager.size() == other.imager.size()
+            && self.channels == other.channels
+            && self.picture_channels() == other.picture_channels()
+            && self.ghost_paths() == other.ghost_paths()
+            && settings(self) == settings(other)
     }
 }
 

@@ -13,6 +13,7 @@ use crate::{
 use serde_json::{Map, Value, json};
 use spectra_core::params::{Reading, Warning};
 use spectra_core::sink::WriteFault;
+use spectra_render::Renderer;
 use spectra_scene::{Member, Scene, Series, SeriesKind, SeriesSummary, Shot, unit_of};
 use std::collections::HashMap;
 use std::io::Cursor;
@@ -75,7 +76,7 @@ pub(crate) fn run(job: &Job<'_>, host: &dyn Host) -> Result<JobEnd, SessionError
         earlier: if job.skip_existing { previous_entries(host, &report_file) } else { Map::new() },
         contact: contact(job, &planned),
         done: Vec::new(),
-        other: None,
+        other: (None, None),
         doubts: Vec::new(),
         report_file,
         reported_s: host.now_s(),
@@ -186,8 +187,8 @@ struct SeriesRun<'a> {
     host: &'a dyn Host,
     earlier: Map<String, Value>,
     contact: Option<Contact>,
-    /// Scene of the previous picture; the next one reuses the stages that they share.
-    other: Option<Arc<Scene>>,
+    /// Scene and renderer of the previous picture; the next one reuses the stages and the search that they share.
+    other: (Option<Arc<Scene>>, Option<Renderer>),
     /// Entry of each picture in `SCENE-series.json`, as text: a JSON tree takes five times the memory, and there may be thousands
     /// of pictures.
     done: Vec<Box<str>>,
@@ -218,7 +219,7 @@ impl SeriesRun<'_> {
         }
         // The scenes of the check are not kept: a thousand of them would not fit into memory.
         let options = SessionOptions { isa: job.isa, picture: picture.index, ..SessionOptions::default() };
-        let mut session = Session::sharing(self.series.clone(), self.other.take(), options)?;
+        let mut session = Session::sharing(self.series.clone(), std::mem::take(&mut self.other), options)?;
         session.prepare(host.workers())?;
         for doubt in session.scene().source.warnings() {
             if !self.doubts.contains(doubt) {
@@ -232,7 +233,7 @@ impl SeriesRun<'_> {
         let traced = tracing.end(IncompletePolicy::IsLeftOut)?;
         snapshots.remove(&[]);
         let Some(TracedPicture { rendering, seconds, .. }) = traced else { return Ok(false) };
-        let scene = session.into_scene();
+        let (scene, renderer) = session.into_scene();
         for warning in exposure_warnings(&scene, &rendering.exposure) {
             // One warning for each place in the scene file, not one in each of a thousand frames.
             if !self.doubts.iter().any(|said| said.0.place == warning.0.place) {
@@ -261,7 +262,7 @@ impl SeriesRun<'_> {
         }
         host.hear(Event::Written(&shown));
         host.hear(Event::Done { report: &report, stopped: false });
-        self.other = Some(scene);
+        self.other = (Some(scene), renderer);
         if host.now_s() - self.reported_s >= REPORT_EVERY_S {
             self.reported_s = host.now_s();
             self.write_report(&self.report(&[], false))?;
@@ -346,7 +347,8 @@ impl SeriesRun<'_> {
         self.write_report(&report)?;
         shown.push(folder.shown(&self.report_file));
         // All pictures have the same outputs of the series; those of the last scene are used.
-        if let Some(scene) = self.other.as_ref().filter(|scene| scene.output.iter().any(|output| output.is_of_series()))
+        if let Some(scene) =
+            self.other.0.as_ref().filter(|scene| scene.output.iter().any(|output| output.is_of_series()))
         {
             report["pictures"] = self.done.iter().map(|said| said_of(said)).collect();
             let text = self.job.series.text();

@@ -29,6 +29,8 @@ pub struct Session {
     ready: Option<(Renderer, Light)>,
     /// A wavelength density that fits the scene, if one is known from before.
     density: Option<Arc<dyn WavelengthDensity>>,
+    /// The renderer of another picture, whose search may serve this one.
+    earlier: Option<Renderer>,
 }
 
 impl Session {
@@ -45,18 +47,19 @@ impl Session {
     /// # Errors
     /// Every fault of the scene.
     pub fn new(series: Series, options: SessionOptions) -> Result<Self, SessionError> {
-        Self::sharing(series, None, options)
+        Self::sharing(series, (None, None), options)
     }
 
-    /// Opens a picture of a series. Takes over the stages of `other` where both scenes have the same section.
+    /// Opens a picture of a series. Takes over the stages of `other` where both scenes have the same section, and what the renderer of an
+    /// `earlier` picture has found if no more than their seeds differ.
     pub(crate) fn sharing(
         series: Series,
-        other: Option<Arc<Scene>>,
+        (other, earlier): (Option<Arc<Scene>>, Option<Renderer>),
         options: SessionOptions,
     ) -> Result<Self, SessionError> {
         let search = ViewSearch { effort: options.effort, workers: &SingleThread };
         let scene = series.scene_between(options.picture, other, None, search)?.into();
-        Ok(Self { series, options, scene, ready: None, density: None })
+        Ok(Self { series, options, scene, ready: None, density: None, earlier })
     }
 
     /// Returns another session, without light, with these values `path=value` on top. It shares the stages that do not depend on
@@ -65,7 +68,7 @@ impl Session {
     /// # Errors
     /// Every fault of the changed scene.
     pub fn branch(&self, texts: &[String], options: SessionOptions) -> Result<Self, SessionError> {
-        Self::sharing(self.series.with_all(texts)?, Some(Arc::clone(&self.scene)), options)
+        Self::sharing(self.series.with_all(texts)?, (Some(Arc::clone(&self.scene)), None), options)
     }
 
     /// Options of this session, with the index of its current picture.
@@ -85,9 +88,9 @@ impl Session {
         &self.scene
     }
 
-    /// Returns the scene and drops the rest.
-    pub(crate) fn into_scene(self) -> Arc<Scene> {
-        self.scene
+    /// Returns the scene and its renderer, if it was prepared, and drops the rest.
+    pub(crate) fn into_scene(self) -> (Arc<Scene>, Option<Renderer>) {
+        (self.scene, self.ready.map(|(renderer, _)| renderer))
     }
 
     /// Returns the number, values and name of the picture in its series.
@@ -132,17 +135,16 @@ impl Session {
         density: Option<Arc<dyn WavelengthDensity>>,
         workers: &dyn Workers,
     ) -> Result<(Renderer, Light), RenderError> {
-        let renderer = Renderer::new(
-            Arc::clone(scene),
-            &RenderOptions {
-                isa: self.options.isa,
-                density,
-                effort: self.options.effort,
-                keeps_light: self.options.keeps_light,
-                workers,
-                ..RenderOptions::default()
-            },
-        )?;
+        let options = RenderOptions {
+            isa: self.options.isa,
+            density,
+            effort: self.options.effort,
+            keeps_light: self.options.keeps_light,
+            workers,
+            ..RenderOptions::default()
+        };
+        let known = self.earlier.as_ref().and_then(|earlier| earlier.for_picture(scene, &options));
+        let renderer = known.map_or_else(|| Renderer::new(Arc::clone(scene), &options), Ok)?;
         let light = renderer.begin()?;
         Ok((renderer, light))
     }

@@ -70,7 +70,7 @@ use spectra_core::numbers::{Numbers, StageKey, mix64};
 use spectra_core::stage::{Emit, Receive};
 use spectra_core::workers::map_pieces;
 use spectra_optics::FrontOpening;
-use spectra_scene::{GhostSpread, LightKind};
+use spectra_scene::{GhostSpread, LightKind, Scene};
 use spectra_tracer::{Indices, Path, Route, Tracer, Travel};
 use std::ops::Range;
 use std::sync::Arc;
@@ -525,8 +525,8 @@ impl Estimator for Ghosts {
         0
     }
 
-    fn reseeded(&self, picture: u64, seed: u64) -> Box<dyn Estimator> {
-        let (pipeline, plan) = (Arc::new(self.pipeline.of_seed(picture)), self.plan.clone());
+    fn reseeded(&self, picture: &Arc<Scene>, seed: u64) -> Box<dyn Estimator> {
+        let (pipeline, plan) = (Arc::new(self.pipeline.of_picture(picture)), self.plan.clone());
         let spreading = self.spreading.clone();
         Box::new(Self { pipeline, plan, spreading, numbers: self.of_seed(seed), scale: self.scale })
     }
