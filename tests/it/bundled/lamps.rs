@@ -144,6 +144,7 @@ pub const LAMPS: &[Promise] = &[
         pictures: &[first(&[
             "imager={kind: xyz, width: 6 mm, height: 2 mm, shift: [-6.15 mm, -5 mm], resolution: [60, 20]}",
             "film=null",
+            "render={samples: 1024}",
         ])],
         says: "panes three times as bright as white melt into soft squares of color",
         held: window_edge,
