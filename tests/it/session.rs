@@ -62,6 +62,16 @@ fn steps_are_a_run_of_their_sum() {
     }
 }
 
+/// A picture that is clean before its last sample is complete, so that nobody waits for the samples that it does not need.
+#[test]
+fn a_clean_picture_is_complete() {
+    let mut session = session("gray-card", &["imager.resolution=[16, 16]", "render.noise=30 %", "render.samples=4096"]);
+    assert!(!session.is_complete() && session.samples_in_all() == 4096);
+    go(&mut session, 4096);
+    assert!(session.is_complete() && session.samples() < 4096, "{} samples", session.samples());
+    assert_eq!(session.samples_in_all(), session.samples());
+}
+
 #[test]
 fn numbers_that_do_not_extend_refuse_to_step() {
     let mut session =

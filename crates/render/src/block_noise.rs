@@ -6,8 +6,8 @@
 //! variance of one. A block has 32 such pixels, which tell its noise to within an eighth. Its neighbors in the same square of 64 x 64
 //! pixels are judged together with it, unless it differs from them by more than chance allows.
 //!
-//! Whether a tile of light of single pixels goes on depends on such light of its square alone. If the noise is small enough relative to
-//! this light, it is small enough relative to all light.
+//! Whether a tile of light of single pixels goes on depends on such light of its square alone. If its noise is small enough whatever other
+//! light is added, it is small enough.
 //!
 //! Everything is computed from exact sums in a fixed order, so that every machine finds the same blocks clean.
 
@@ -72,6 +72,8 @@ struct BlockNoise {
     asked: Vec<f64>,
     /// Whether a kind of light goes on in a block.
     goes_on: Vec<Vec<bool>>,
+    /// Whether what is asked for follows from the grain of a film.
+    by_grain: bool,
 }
 
 impl Renderer {
@@ -95,17 +97,20 @@ impl Renderer {
             let of = |local: bool, variances: &[f64]| -> f64 {
                 variances.iter().zip(&is_local).filter(|(_, is)| **is == local).map(|(v, _)| v).sum()
             };
-            let allowed = |mean: f64| tolerance.deviation(mean) * tolerance.deviation(mean);
+            let allowed = |mean: f64| tolerance.deviation(mean).powi(2);
+            let is_all = kinds as f64 == local_kinds;
+            let allowed_local =
+                |mean: f64| if is_all { allowed(mean) } else { tolerance.deviation_of_part(mean).powi(2) };
             // Variance of the light of single pixels, as a multiple of what is allowed.
             let local: Vec<f64> =
-                cells.iter().map(|cell| over(of(true, &variances(cell)), allowed(cell.local_mean()))).collect();
+                cells.iter().map(|cell| over(of(true, &variances(cell)), allowed_local(cell.local_mean()))).collect();
             for (block, cell) in cells.iter().enumerate() {
                 let own = variances(cell);
                 let (local, checks) = pooled(
                     (local[block], cell.lit_checks),
                     blocks.around(block).map(|at| (local[at], cells[at].lit_checks)),
                 );
-                let all = of(false, &own) + local * allowed(cell.local_mean());
+                let all = of(false, &own) + local * allowed_local(cell.local_mean());
                 let times = over(all, allowed(cell.mean())).sqrt();
                 if times > excess[block] {
                     let mean = cell.mean().max(tolerance.floor());
@@ -122,7 +127,8 @@ impl Renderer {
                 }
             }
         }
-        Ok(BlockNoise { blocks, noise, asked, goes_on })
+        let by_grain = tolerances.iter().any(Tolerance::is_grain);
+        Ok(BlockNoise { blocks, noise, asked, goes_on, by_grain })
     }
 
     /// Sums the light of each block in each judged channel.
@@ -199,9 +205,8 @@ impl Renderer {
         if self.scene().render.noise.is_none() || light.parts.iter().any(|part| part.rays == 0) {
             return Ok(None);
         }
-        let BlockNoise { mut noise, asked, .. } = self.judge(light, &SingleThread)?;
+        let BlockNoise { mut noise, asked, by_grain, .. } = self.judge(light, &SingleThread)?;
         let clean = noise.iter().zip(&asked).filter(|(n, asked)| n <= asked).count() as f64 / noise.len() as f64;
-        let by_grain = self.tolerances(light)?.iter().any(Tolerance::is_grain);
         let asked = median(asked.into_iter().filter(|asked| *asked > 0.0));
         noise.sort_unstable_by(f64::total_cmp);
         let of = |part: f64| noise[((noise.len() - 1) as f64 * part) as usize];

@@ -35,11 +35,6 @@ impl CheckPixels {
         Self { width: size.width_px, height: size.height_px, across, seed: mix64(seed ^ SEED) }
     }
 
-    /// Draws the check pixels of the same frame with another seed.
-    pub fn reseeded(self, seed: u64) -> Self {
-        Self { seed: mix64(seed ^ SEED), ..self }
-    }
-
     /// Number of groups, and so of check pixels.
     pub fn count(self) -> usize {
         self.across as usize * self.height.div_ceil(GROUP[1]) as usize

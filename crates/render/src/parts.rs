@@ -73,7 +73,7 @@ impl Parts {
             Part { estimator: part.estimator.reseeded(picture, own), role: part.role }
         };
         let all = self.all.iter().enumerate().map(reseed).collect();
-        Self { all, kinds: self.kinds, checks: self.checks.reseeded(seed) }
+        Self { all, kinds: self.kinds, checks: CheckPixels::of(picture.imager.size(), seed) }
     }
 
     /// The first part of each kind of light.

@@ -37,6 +37,15 @@ impl Tolerance {
         }
     }
 
+    /// Returns the largest standard deviation that a part of the light may have, of which the mean exposure is `mean`, whatever other light
+    /// is added. Grain may hide less on the curve's straight part than in its toe.
+    pub fn deviation_of_part(&self, mean: f64) -> f64 {
+        match self {
+            Self::Fraction { .. } => self.deviation(mean),
+            Self::Grain(grain) => (OF_GRAIN * grain.least_deviation_from(mean)).clamp(LEAST * mean, MOST * mean),
+        }
+    }
+
     /// The exposure below which a block is judged as if it were no darker; 0 if there is none.
     pub fn floor(&self) -> f64 {
         match self {

@@ -191,8 +191,15 @@ impl Session {
         self.ready.as_ref().is_some_and(|(_, light)| light.covers_frame())
     }
 
+    /// Number of samples of each pixel at which the picture is complete: those that the scene states, or fewer once it is clean.
+    #[must_use]
+    pub fn samples_in_all(&self) -> u64 {
+        if self.is_complete() { self.samples() } else { u64::from(self.scene.render.samples) }
+    }
+
     /// Returns whether the light has all samples that the scene states, or is as clean as the scene asks for.
-    pub(crate) fn is_complete(&self) -> bool {
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
         self.ready.as_ref().is_some_and(|(renderer, light)| renderer.is_complete(light))
     }
 

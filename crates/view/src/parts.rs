@@ -44,7 +44,7 @@ pub fn head(session: &Session, times: &[FilmTime], rays: u64) -> Value {
     let scene = session.scene();
     json!({
         "samples": session.samples(),
-        "of": scene.render.samples,
+        "of": session.samples_in_all(),
         "rays": rays,
         "exposure_s": times.first().map_or(1.0, |time| time.time_s),
         "lens": scene.lens.name,

@@ -109,7 +109,7 @@ impl OpenScene {
             "width": size.width_px,
             "height": size.height_px,
             "samples": self.session.samples(),
-            "of": scene.render.samples,
+            "of": self.session.samples_in_all(),
             "light": self.session.has_light(),
         })
     }

@@ -76,7 +76,7 @@ impl PageSession {
         let whole = work.look()?;
         // For a first look, half as many rays are good enough. The small light, with its negatives, is kept until there are twice as many
         // rays, or all samples.
-        let is_whole = work.session.samples() >= u64::from(work.session.scene().render.samples);
+        let is_whole = work.session.is_complete();
         let is_better = |rays: u64| whole.rays >= 2 * rays || (is_whole && whole.rays > rays);
         if !quick && work.small.as_ref().is_none_or(|small| is_better(small.rays)) {
             work.small = whole.small().map(Arc::new);

@@ -188,7 +188,7 @@ impl PageSession {
             return Phase::Idle;
         }
         let (all, done) = (u64::from(work.session.scene().render.samples), work.session.samples());
-        if done >= all {
+        if work.session.is_complete() {
             return Phase::Idle;
         }
         let traced = match self.trace_piece(work, all, done) {

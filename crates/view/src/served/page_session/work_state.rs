@@ -142,9 +142,9 @@ impl WorkState {
         !self.is_flat() && has_stars(&self.session) && !self.is_traced()
     }
 
-    /// Returns whether all samples are traced.
+    /// Returns whether all samples are traced, or as many as the noise that the scene asks for takes.
     fn is_traced(&self) -> bool {
-        self.session.samples() >= u64::from(self.session.scene().render.samples)
+        self.session.is_complete()
     }
 
     /// Returns the light so far.
