@@ -10,7 +10,6 @@ use polarization::PolarizationColumns;
 use crate::isa::Isa;
 use crate::loss::{ALIVE, Loss};
 use crate::numbers::{Numbers, RayColumns, StageKey, StageNumbers};
-use std::ops::Range;
 
 /// Line number of a ray whose wavelength was drawn from a continuum instead of a spectral line.
 pub const CONTINUUM: u32 = u32::MAX;
@@ -72,8 +71,8 @@ pub struct RayBatch {
     line: Vec<u32>,
     tag: Vec<u32>,
     surface: u32,
-    /// Runs of living rays; [`RayBatch::compact`] reuses this allocation.
-    stretches: Vec<Range<usize>>,
+    /// Indices of living rays; [`RayBatch::compact`] reuses this allocation.
+    kept: Vec<u32>,
     scratch: Scratch,
 }
 
@@ -188,7 +187,7 @@ impl RayBatch {
             line: vec![CONTINUUM; capacity],
             tag: vec![0; capacity],
             surface: 0,
-            stretches: Vec::new(),
+            kept: Vec::new(),
             scratch: Scratch {
                 radius2: column(),
                 radius2_is_true: false,
@@ -446,54 +445,66 @@ impl RayBatch {
     pub fn compact(&mut self) -> usize {
         let len = self.len;
         let Some(first) = self.states().iter().position(|state| *state != ALIVE) else { return len };
-        let mut stretches = std::mem::take(&mut self.stretches);
-        stretches.clear();
-        let mut ended = first;
-        while ended < len {
-            let states = &self.states()[ended..];
-            let from = ended + states.iter().position(|state| *state == ALIVE).unwrap_or(states.len());
-            let states = &self.states()[from..];
-            let upto = from + states.iter().position(|state| *state != ALIVE).unwrap_or(states.len());
-            stretches.push(from..upto);
-            ended = upto;
+        let mut kept = std::mem::take(&mut self.kept);
+        kept.resize(self.capacity, 0);
+        let mut many = 0_usize;
+        // Which rays have ended is unpredictable, so there is no branch.
+        for (i, state) in (first as u32..).zip(&self.states()[first..]) {
+            kept[many] = i;
+            many += usize::from(*state == ALIVE);
         }
+        let living = Living { first, kept: &kept[..many], are_most: (len - first - many) * LONG < many };
         let mut c = self.columns_mut();
-        let to = first + stretches.iter().map(ExactSizeIterator::len).sum::<usize>();
         let columns = [&mut c.x, &mut c.y, &mut c.z, &mut c.l, &mut c.m, &mut c.n];
         for column in columns.into_iter().chain([&mut c.wavelength_nm, &mut c.index, &mut c.weight]) {
-            close_up(column, first, &stretches);
+            living.close_up(column);
         }
-        close_up(c.line, first, &stretches);
-        close_up(c.tag, first, &stretches);
+        living.close_up(c.line);
+        living.close_up(c.tag);
         if !c.optical_path_mm.is_empty() {
-            close_up(c.optical_path_mm, first, &stretches);
+            living.close_up(c.optical_path_mm);
         }
-        for (to, from) in (first..).zip(stretches.iter().cloned().flatten()) {
-            c.polarization.keep(from, to);
-            c.numbers.keep(from, to);
+        for (to, from) in (first..).zip(&kept[..many]) {
+            c.polarization.keep(*from as usize, to);
+            c.numbers.keep(*from as usize, to);
         }
-        c.state[..to].fill(ALIVE);
-        self.stretches = stretches;
+        let to = first + many;
+        c.state[first..to].fill(ALIVE);
+        self.kept = kept;
         self.len = to;
         to
     }
 }
 
-/// Runs of at most this many rays are moved ray by ray.
-const SHORT: usize = 8;
+/// Mean length of the runs of living rays from which these are moved run by run.
+const LONG: usize = 16;
 
-/// Moves the values of `stretches`, in their order, to index `to` and the places after it.
-#[inline(always)]
-fn close_up<T: Copy>(column: &mut [T], mut to: usize, stretches: &[Range<usize>]) {
-    for stretch in stretches {
-        if stretch.len() > SHORT {
-            column.copy_within(stretch.clone(), to);
+/// The living rays of a batch from the first one that ended.
+struct Living<'a> {
+    /// Index of the first ray that ended.
+    first: usize,
+    /// Indices of the living rays behind it, in ascending order.
+    kept: &'a [u32],
+    /// Whether so few rays ended that runs are long.
+    are_most: bool,
+}
+
+impl Living<'_> {
+    /// Moves the values of a column together.
+    #[inline(always)]
+    fn close_up<T: Copy>(&self, column: &mut [T]) {
+        let mut to = self.first;
+        if self.are_most {
+            for run in self.kept.chunk_by(|a, b| a + 1 == *b) {
+                let from = run[0] as usize;
+                column.copy_within(from..from + run.len(), to);
+                to += run.len();
+            }
         } else {
-            for (k, from) in stretch.clone().enumerate() {
-                column[to + k] = column[from];
+            for (to, from) in (to..).zip(self.kept) {
+                column[to] = column[*from as usize];
             }
         }
-        to += stretch.len();
     }
 }
 

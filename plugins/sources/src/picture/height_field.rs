@@ -230,8 +230,8 @@ impl HeightField {
     #[inline(always)]
     pub(super) fn hit(&self, line: &Line) -> Option<Hit> {
         let [w_in, w_end] = self.over(line)?;
-        // A ray that enters from outside the picture may do so behind a surface, so every step of it has to be walked.
-        let narrowed = if w_in >= self.nearest { self.narrowed(line, w_in, w_end) } else { None };
+        // A ray that enters from outside the picture may do so behind a surface. Every step of it then has to be walked.
+        let narrowed = if self.starts_in_front(line, w_in, w_end) { self.narrowed(line, w_in, w_end) } else { None };
         let (cell, near) = match narrowed {
             Some((cell, near)) => {
                 // Up to here the ray passed in front of everything, since no surface is nearer.
@@ -375,6 +375,16 @@ impl HeightField {
         let first = self.cell_at([less(a[0], b[0]) - room[0], less(a[1], b[1]) - room[1]]);
         let last = self.cell_at([more(a[0], b[0]) + room[0], more(a[1], b[1]) + room[1]]);
         (first, last)
+    }
+
+    /// Returns whether a line starts in front of all surfaces around it, up to an end.
+    #[inline(always)]
+    fn starts_in_front(&self, line: &Line, w_in: f64, w_end: f64) -> bool {
+        if w_in >= self.nearest {
+            return true;
+        }
+        let (first, last) = self.around_line(line, w_in, w_end, self.room(line));
+        f64::from(self.bounds.of(first, last).nearest) <= w_in
     }
 
     /// Returns whether a line stays behind all surfaces around it between two ends.
