@@ -292,6 +292,22 @@ fn the_search_of_a_frame_serves_the_next() {
     assert!(first.for_picture(&next, &draft).is_none());
 }
 
+/// A picture with another source takes over the pupil that the imager sees, and keeps the bits that it has alone.
+#[test]
+fn the_pupil_of_a_frame_serves_one_with_another_source() {
+    let set = [SMALL, "render.samples=2", "lens.file=zeiss-biotar-50-f1.4"];
+    let first = ready(load("bench/noise-portrait.yaml", &set));
+    let mut next = first.scene().with_seed(1);
+    next.source = load("bench/noise-night.yaml", &set).source.clone();
+    let (next, mut beside) = (Arc::new(next.clone()), next);
+    beside.lens = load("bench/noise-portrait.yaml", &set).lens.clone();
+    assert!(next.has_the_view_of(first.scene()) && !beside.has_the_view_of(first.scene()));
+    let options = RenderOptions { earlier: Some(&first), ..RenderOptions::default() };
+    assert!(first.for_picture(&next, &options).is_none());
+    let taken = Renderer::new(Arc::clone(&next), &options).expect("renders");
+    assert!(bits(&rendered(&taken)) == bits(&rendered(&ready(Scene::clone(&next)))));
+}
+
 /// Film with few rays causes a warning: empty pixels among others are a bias, not a picture.
 #[test]
 fn film_with_too_few_rays_is_said_so() {

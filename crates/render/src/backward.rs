@@ -66,23 +66,23 @@ impl Backward {
         let scene = &pipeline.scene;
         let launch = scene.imager.launch().ok_or(RenderError::CannotLaunch)?;
         pipeline.source().radiance().ok_or(RenderError::NoRadiance)?;
-        let mut rays = imager_rays(launch, scene.imager.size());
-        let [x, y, z] = rays.positions();
-        let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
-        let grid = scene.grid;
-        let band_nm = [grid.start_nm, grid.end_nm()];
-        let effort = pipeline.effort;
-        let rear = RearPupil::search_by(&scene.lens, &pipeline.tracer, &points, band_nm, workers, effort);
         let numbers = pipeline.numbers(PILOT_SEED);
         let shifts = numbers.as_random();
-        let rear = rear.map(|rear| {
+        let search = || {
+            let mut rays = imager_rays(launch, scene.imager.size());
+            let [x, y, z] = rays.positions();
+            let points: Vec<DVec3> = (0..rays.len()).map(|i| DVec3::new(x[i], y[i], z[i])).collect();
+            let grid = scene.grid;
+            let band_nm = [grid.start_nm, grid.end_nm()];
+            let effort = pipeline.effort;
+            let rear = RearPupil::search_by(&scene.lens, &pipeline.tracer, &points, band_nm, workers, effort)?;
             rays.columns_mut().wavelength_nm.fill(grid.start_nm);
             rays.number(0, &numbers, ESTIMATOR, 0, 0);
             let aside_mm = aside_mm(launch, &rear, &rays);
-            if aside_mm > 0.0 { rear.widened(ROOM * aside_mm) } else { rear }
-        });
-        let pixels = scene.imager.size().pixels() as u64;
-        let (rear, seed) = (Arc::new(rear.ok_or_else(|| RenderError::no_pupil(workers))?), pipeline.seed);
+            Some(if aside_mm > 0.0 { rear.widened(ROOM * aside_mm) } else { rear })
+        };
+        let rear = pipeline.rear_pupil(search).ok_or_else(|| RenderError::no_pupil(workers))?;
+        let (pixels, seed) = (scene.imager.size().pixels() as u64, pipeline.seed);
         let mut own = Self { rear, numbers, shifts, scale: 1.0, checks: None, pipeline };
         own.scale = pilot::scale(&own.pipeline, |state, batch, mut look| {
             own.steps(state, &spread(pixels, batch), AimPart::Whole, &mut look);

@@ -12,10 +12,10 @@ use spectra_core::numbers::{Dimension, Numbers};
 use spectra_core::spectral::SystemResponse;
 use spectra_core::stage::{Source, WavelengthDensity};
 use spectra_core::{Isa, Loss, RayBatch};
-use spectra_optics::Effort;
+use spectra_optics::{Effort, RearPupil};
 use spectra_scene::{LightKind, NumberFamily, Scene};
 use spectra_tracer::{Indices, Tracer, Work};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// The part of a source's light that is traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +50,8 @@ pub struct Pipeline {
     pub(crate) isa: Isa,
     pub(crate) effort: Effort,
     pub(crate) tracer: Arc<Tracer>,
+    /// The pupil that the imager sees, once it is found.
+    rear: Arc<OnceLock<Arc<RearPupil>>>,
     pub(crate) density: Arc<dyn WavelengthDensity>,
     pub(crate) responses: Responses,
     /// The channels of the scene that are recorded, in the order of `responses`.
@@ -83,7 +85,7 @@ impl Pipeline {
         let responses = Responses::new(scene.grid, &system.channels);
         let draws = draws(scene);
         let (scene, tracer, share, seed) = (Arc::clone(scene), tracer, SourcePart::Whole, scene.render.seed);
-        Ok(Self { scene, seed, share, isa, effort, tracer, density, responses, recorded, draws, scattered: false })
+        Ok(Self { scene, seed, share, isa, effort, tracer, rear: Arc::default(), density, responses, recorded, draws, scattered: false })
     }
 
     /// Returns the kind of straight light that it traces. Light scattered by haze, dust or scratches is stray light.
@@ -122,7 +124,23 @@ impl Pipeline {
 
     /// Returns a copy that traces through another tracer of the lens.
     pub(crate) fn with_tracer(&self, tracer: Arc<Tracer>) -> Self {
-        Self { tracer, ..self.clone() }
+        Self { tracer, rear: Arc::default(), ..self.clone() }
+    }
+
+    /// Takes over the pupil that the imager sees from the pipeline of another scene, if it does not depend on what differs.
+    pub(crate) fn take_pupil(&mut self, earlier: &Self) {
+        if self.isa == earlier.isa && self.effort == earlier.effort && self.scene.has_the_view_of(&earlier.scene) {
+            self.rear = Arc::clone(&earlier.rear);
+        }
+    }
+
+    /// Returns the pupil that the imager sees. `search` finds it if it is not known yet, or returns `None` if there is none.
+    pub(crate) fn rear_pupil(&self, search: impl FnOnce() -> Option<RearPupil>) -> Option<Arc<RearPupil>> {
+        if let Some(known) = self.rear.get() {
+            return Some(Arc::clone(known));
+        }
+        let found = Arc::new(search()?);
+        Some(Arc::clone(self.rear.get_or_init(|| found)))
     }
 
     /// Returns a copy that traces light scattered by haze, dust and scratches on the lens; `None` if nothing lies on it.

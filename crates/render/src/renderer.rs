@@ -54,8 +54,15 @@ impl Renderer {
     /// are to stop meanwhile.
     pub fn new(scene: impl Into<Arc<Scene>>, options: &RenderOptions<'_>) -> Result<Self, RenderError> {
         let scene = scene.into();
+        if let Some(known) = options.earlier.and_then(|earlier| earlier.for_picture(&scene, options)) {
+            return Ok(known);
+        }
         scene.source.prepare().map_err(RenderError::Source)?;
-        let pipeline = Arc::new(Pipeline::new(&scene, options)?);
+        let mut pipeline = Pipeline::new(&scene, options)?;
+        if let Some(earlier) = options.earlier {
+            pipeline.take_pupil(&earlier.pipeline);
+        }
+        let pipeline = Arc::new(pipeline);
         let Estimators { all, ledger, has_lights } = Estimators::new(&pipeline, &options.traced, options.workers)?;
         let parts = Parts::new(&scene, all);
         let (is_star_seen, known_medians) = (OnceLock::new(), OnceLock::new());

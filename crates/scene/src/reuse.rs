@@ -151,6 +151,16 @@ impl Scene {
         scene
     }
 
+    /// Returns whether light between the imager and the lens takes the same ways as in `other`: both have the same lens, imager and band.
+    #[must_use]
+    pub fn has_the_view_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.lens, &other.lens)
+            && same_section(&self.params, &other.params, "imager")
+            && self.imager.size() == other.imager.size()
+            && self.grid == other.grid
+            && self.render.numbers == other.render.numbers
+    }
+
     /// Returns whether rays of `other` differ from those of this scene in their seed only: both share the stages up to the imager. Films
     /// may differ if they record the same channels.
     #[must_use]
@@ -158,9 +168,7 @@ impl Scene {
         let settings = |scene: &Self| RenderSettings { seed: 0, frame: None, ..scene.render };
         Arc::ptr_eq(&self.source, &other.source)
             && Arc::ptr_eq(&self.sampler, &other.sampler)
-            && Arc::ptr_eq(&self.lens, &other.lens)
-            && same_section(&self.params, &other.params, "imager")
-            && self.imager.size() == other.imager.size()
+            && self.has_the_view_of(other)
             && self.channels == other.channels
             && self.picture_channels() == other.picture_channels()
             && self.ghost_paths() == other.ghost_paths()

@@ -141,10 +141,10 @@ impl Session {
             effort: self.options.effort,
             keeps_light: self.options.keeps_light,
             workers,
+            earlier: self.earlier.as_ref(),
             ..RenderOptions::default()
         };
-        let known = self.earlier.as_ref().and_then(|earlier| earlier.for_picture(scene, &options));
-        let renderer = known.map_or_else(|| Renderer::new(Arc::clone(scene), &options), Ok)?;
+        let renderer = Renderer::new(Arc::clone(scene), &options)?;
         let light = renderer.begin()?;
         Ok((renderer, light))
     }

@@ -20,10 +20,8 @@ use spectra_core::workers::map_pieces;
 use spectra_lens::Lens;
 use spectra_tracer::{Interaction, Ledger, Path, PathSearch, StepLedger, Travel};
 
-/// Number of rays for each path if no path has more than two reflections.
-const RAYS: usize = 16_384;
-/// Number of rays for each path if there are paths with more than two reflections.
-const RAYS_OF_MORE: usize = 4096;
+/// Number of rays for each path.
+const RAYS: usize = 4096;
 /// Number of rays in a batch.
 const BATCH: usize = 256;
 const MM2_PER_M2: f64 = 1e6;
@@ -109,7 +107,7 @@ pub(super) fn of(
     workers: &dyn Workers,
 ) -> Result<LightLedger, RenderError> {
     let (count, imager) = (lens.elements.len(), lens.elements.len() - 1);
-    let many = if order > 2 { RAYS_OF_MORE } else { RAYS } / ghosts.pipeline.search_divisor();
+    let many = RAYS / ghosts.pipeline.search_divisor();
     let rays = started(ghosts, many);
     let follow = |state: &mut ThreadState, path: &Path| follow(ghosts, state, &rays, path, imager);
     let fresh = || ghosts.state(BATCH);

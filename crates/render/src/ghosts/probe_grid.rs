@@ -210,9 +210,10 @@ struct Stretch {
 struct Survey {
     part: FrontRect,
     maps: Vec<Option<Map>>,
-    stretches: Vec<Vec<Stretch>>,
-    /// Landing points of the folds in each mesh.
-    folds: Vec<Vec<Pair>>,
+    /// Pieces of edges, with their meshes, mesh by mesh.
+    stretches: Vec<(usize, Stretch)>,
+    /// Landing points of folds, with their meshes, mesh by mesh.
+    folds: Vec<(usize, Pair)>,
 }
 
 /// Number of nodes across.
@@ -225,7 +226,8 @@ impl Survey {
         let mut at = |nodes: &[Pair]| land(&nodes.iter().map(|node| place(*node)).collect::<Vec<_>>());
         let landed = at(&nodes);
         let crossings = Crossings::found(&landed, &mut at);
-        let stretches = (0..SIDE * SIDE).map(|mesh| crossings.stretches(mesh, &landed)).collect();
+        let of_mesh = |mesh: usize| crossings.stretches(mesh, &landed).into_iter().map(move |stretch| (mesh, stretch));
+        let stretches = (0..SIDE * SIDE).flat_map(of_mesh).collect();
         let maps = filled((0..SIDE * SIDE).map(|mesh| map(corners(mesh).map(|node| landed[node]))).collect());
         let folds = folds(&maps, &landed);
         Self { part, maps, stretches, folds }
@@ -235,10 +237,8 @@ impl Survey {
     fn half(&self, at: usize, map: &Map) -> f64 {
         let mut half = (MESHES * map.shortest()).min(MOST_HALF);
         if let Some(center) = map.center {
-            for mesh in around(at, FOLDS_WITHIN) {
-                for fold in &self.folds[mesh] {
-                    half = half.min(OF_FOLD * length(less(*fold, center)));
-                }
+            for (_, fold) in self.folds.iter().filter(|(mesh, _)| is_within(*mesh, at, FOLDS_WITHIN)) {
+                half = half.min(OF_FOLD * length(less(*fold, center)));
             }
         }
         half.max(LEAST_AT_FOLD.min(MESHES * map.longest()))
@@ -247,8 +247,8 @@ impl Survey {
     /// Iterates over the edges around a mesh: the distance of each piece from the middle of the mesh, and the line on which it lies.
     fn lines<'a>(&'a self, at: usize, map: &'a Map) -> impl Iterator<Item = (f64, NearbyEdge)> + 'a {
         let middle = [(at % SIDE) as f64 + 0.5, (at / SIDE) as f64 + 0.5];
-        let all = around(at, EDGES_WITHIN).flat_map(|mesh| &self.stretches[mesh]);
-        all.filter_map(move |stretch| {
+        let near = self.stretches.iter().filter(move |(mesh, _)| is_within(*mesh, at, EDGES_WITHIN));
+        near.filter_map(move |(_, stretch)| {
             let normal = map.normal(stretch.out);
             let size = length(normal);
             if !size.is_finite() || size <= 0.0 {
@@ -269,6 +269,13 @@ impl Survey {
 fn corners(mesh: usize) -> [usize; 4] {
     let first = mesh / SIDE * NODES + mesh % SIDE;
     [first, first + 1, first + NODES, first + NODES + 1]
+}
+
+/// Returns whether a mesh is at most this many meshes away from another, across and up.
+fn is_within(mesh: usize, from: usize, away: i64) -> bool {
+    let side = SIDE as i64;
+    let [(column, row), (own_column, own_row)] = [mesh, from].map(|at| (at as i64 % side, at as i64 / side));
+    (column - own_column).abs() <= away && (row - own_row).abs() <= away
 }
 
 /// Iterates over a mesh and its neighbors up to this many meshes away.
@@ -309,8 +316,8 @@ fn filled(maps: Vec<Option<Map>>) -> Vec<Option<Map>> {
 }
 
 /// Finds the folds: between two neighboring meshes of which one is mapped directly and the other mirrored, light lies on a caustic.
-fn folds(maps: &[Option<Map>], landed: &[Option<Pair>]) -> Vec<Vec<Pair>> {
-    let mut folds = vec![Vec::new(); SIDE * SIDE];
+fn folds(maps: &[Option<Map>], landed: &[Option<Pair>]) -> Vec<(usize, Pair)> {
+    let mut folds = Vec::new();
     let is_mirrored =
         |mesh: usize| maps[mesh].as_ref().filter(|map| map.center.is_some()).map(|map| map.determinant() < 0.0);
     for mesh in 0..SIDE * SIDE {
@@ -320,7 +327,7 @@ fn folds(maps: &[Option<Map>], landed: &[Option<Pair>]) -> Vec<Vec<Pair>> {
         for (other, [a, b]) in right.into_iter().chain(above) {
             let folds_there = matches!((is_mirrored(mesh), is_mirrored(other)), (Some(a), Some(b)) if a != b);
             if let (true, Some(a), Some(b)) = (folds_there, landed[a], landed[b]) {
-                folds[mesh].push(between(a, b));
+                folds.push((mesh, between(a, b)));
             }
         }
     }
