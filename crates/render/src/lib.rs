@@ -57,6 +57,7 @@ mod star_trial;
 mod sums;
 mod tiles;
 mod tolerance;
+mod trial;
 mod veil;
 mod warnings;
 mod workers;

@@ -85,7 +85,20 @@ impl Pipeline {
         let responses = Responses::new(scene.grid, &system.channels);
         let draws = draws(scene);
         let (scene, tracer, share, seed) = (Arc::clone(scene), tracer, SourcePart::Whole, scene.render.seed);
-        Ok(Self { scene, seed, share, isa, effort, tracer, rear: Arc::default(), density, responses, recorded, draws, scattered: false })
+        Ok(Self {
+            scene,
+            seed,
+            share,
+            isa,
+            effort,
+            tracer,
+            rear: Arc::default(),
+            density,
+            responses,
+            recorded,
+            draws,
+            scattered: false,
+        })
     }
 
     /// Returns the kind of straight light that it traces. Light scattered by haze, dust or scratches is stray light.

@@ -2,27 +2,19 @@
 //!
 //! Diffraction at the edge of the aperture takes seconds. Unless the scene decides, it is on if lights are rendered apart from the rest and
 //! the star of the brightest pixel exceeds 1 % of the frame's median in some channel, at the distance where it leaves the core. The sums of
-//! a render that was stopped cannot tell that, so a trial does: 64 tiles of the rest with 16 samples give the median, and up to 262 144 rays
-//! of the lights give the brightest pixel. Where these are few for each pixel, a square of pixels around it takes its place, large enough to
+//! a render that was stopped cannot tell that, so a trial does: it gives the median of the rest ([`crate::trial`]), and up to 262 144 rays of
+//! the lights give the brightest pixel. Where these are few for each pixel, a square of pixels around it takes its place, large enough to
 //! hold 64 rays. The trial draws from the random numbers of the pilot, so every seed of the picture decides alike.
 
 use crate::estimator::Estimator;
-use crate::memory::memory_needed;
 use crate::pilot::PILOT_SEED;
 use crate::pipeline::Pipeline;
-use crate::sums::ExactSums;
+use crate::trial::{medians, new_sums, of_pilot};
 use crate::{Done, RenderError, diffracted};
 use spectra_core::frame::FrameSize;
-use spectra_scene::Scene;
-use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// Fraction of the median of the frame above which a star is seen.
 const SEEN: f64 = crate::ghosts::MATTERS;
-/// Tiles of the frame whose median stands for that of the frame.
-const TILES: usize = 64;
-/// Samples of each pixel of these tiles.
-const SAMPLES: u64 = 16;
 /// Largest number of rays of the lights, unless one unit of work has more.
 const LIGHT_RAYS: u64 = 1 << 18;
 /// Smallest number of rays from which the brightest place is known: to an eighth.
@@ -43,38 +35,6 @@ pub(crate) fn is_star_seen(
     let stars = pipeline.recorded.iter().zip(medians.into_iter().zip(peaks)).filter_map(star);
     // Without any light around it, a star is always seen.
     Ok(stars.filter(|star| !star.is_nan()).fold(0.0, f64::max) > SEEN)
-}
-
-/// Returns the scene with the seed of the pilot.
-fn of_pilot(pipeline: &Pipeline) -> Arc<Scene> {
-    Arc::new(pipeline.scene.with_seed(PILOT_SEED))
-}
-
-/// Allocates sums for all the light of one estimator.
-fn new_sums(pipeline: &Pipeline) -> Result<ExactSums, RenderError> {
-    let cells = pipeline.scene.imager.size().pixels() * pipeline.recorded.len();
-    ExactSums::new(cells).ok_or_else(|| RenderError::Memory(memory_needed(&pipeline.scene)))
-}
-
-/// Returns the median of the frame in each channel, W/m2, from some of its tiles.
-pub(crate) fn medians(pipeline: &Pipeline, rest: &dyn Estimator) -> Result<Vec<f64>, RenderError> {
-    let (all, channels) = (rest.tiles(), pipeline.recorded.len());
-    let tiles: Vec<u32> = (0..all.min(TILES)).map(|i| (i * all / all.min(TILES)) as u32).collect();
-    let (trial, samples) = (rest.reseeded(&of_pilot(pipeline), PILOT_SEED), 0..SAMPLES);
-    let (sums, mut scratch) = (new_sums(pipeline)?, trial.scratch());
-    for unit in 0..trial.units(&samples, &tiles) {
-        trial.run(&samples, &tiles, unit, &mut scratch, &sums);
-    }
-    let weights = trial.weights(&[&Done::of(SAMPLES, None, BTreeMap::new())], 0, 1.0);
-    let pixels: Vec<usize> =
-        (0..weights.len()).filter(|pixel| tiles.binary_search(&(trial.tile_of(*pixel) as u32)).is_ok()).collect();
-    let median = |channel: usize| {
-        let value = |pixel: &usize| sums.get(pixel * channels + channel) as f64 * weights[*pixel];
-        let mut values: Vec<f64> = pixels.iter().map(value).collect();
-        let middle = values.len() / 2;
-        *values.select_nth_unstable_by(middle, f64::total_cmp).1
-    };
-    Ok((0..channels).map(median).collect())
 }
 
 /// Returns the light of the brightest pixel in each channel, W/m2.

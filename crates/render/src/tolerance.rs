@@ -2,7 +2,7 @@
 
 use crate::light::Light;
 use crate::renderer::Renderer;
-use crate::{RenderError, star_trial};
+use crate::{RenderError, trial};
 use spectra_core::frame::{ExposureChannel, ExposureFrame};
 use spectra_core::spectral::Channel;
 use spectra_core::stage::GrainNoise;
@@ -123,7 +123,7 @@ impl Renderer {
         }
         let mut medians: Vec<f64> = Vec::new();
         for part in self.parts().firsts().iter().filter(|part| part.estimator.in_check_pixels().is_some()) {
-            let own = star_trial::medians(self.pipeline(), &*part.estimator)?;
+            let own = trial::medians(self.pipeline(), &*part.estimator)?;
             medians.resize(own.len(), 0.0);
             medians.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
         }
