@@ -10,6 +10,7 @@ use polarization::PolarizationColumns;
 use crate::isa::Isa;
 use crate::loss::{ALIVE, Loss};
 use crate::numbers::{Numbers, RayColumns, StageKey, StageNumbers};
+use std::ops::Range;
 
 /// Line number of a ray whose wavelength was drawn from a continuum instead of a spectral line.
 pub const CONTINUUM: u32 = u32::MAX;
@@ -73,6 +74,8 @@ pub struct RayBatch {
     surface: u32,
     /// Indices of living rays; [`RayBatch::compact`] reuses this allocation.
     kept: Vec<u32>,
+    /// Runs of living rays; reused in the same way.
+    runs: Vec<Range<usize>>,
     scratch: Scratch,
 }
 
@@ -188,6 +191,7 @@ impl RayBatch {
             tag: vec![0; capacity],
             surface: 0,
             kept: Vec::new(),
+            runs: Vec::new(),
             scratch: Scratch {
                 radius2: column(),
                 radius2_is_true: false,
@@ -453,7 +457,13 @@ impl RayBatch {
             kept[many] = i;
             many += usize::from(*state == ALIVE);
         }
-        let living = Living { first, kept: &kept[..many], are_most: (len - first - many) * LONG < many };
+        let mut runs = std::mem::take(&mut self.runs);
+        runs.clear();
+        if (len - first - many) * LONG < many {
+            let run = |run: &[u32]| run[0] as usize..run[0] as usize + run.len();
+            runs.extend(kept[..many].chunk_by(|a, b| a + 1 == *b).map(run));
+        }
+        let living = Living { first, kept: &kept[..many], runs: &runs };
         let mut c = self.columns_mut();
         let columns = [&mut c.x, &mut c.y, &mut c.z, &mut c.l, &mut c.m, &mut c.n];
         for column in columns.into_iter().chain([&mut c.wavelength_nm, &mut c.index, &mut c.weight]) {
@@ -470,7 +480,7 @@ impl RayBatch {
         }
         let to = first + many;
         c.state[first..to].fill(ALIVE);
-        self.kept = kept;
+        (self.kept, self.runs) = (kept, runs);
         self.len = to;
         to
     }
@@ -485,25 +495,23 @@ struct Living<'a> {
     first: usize,
     /// Indices of the living rays behind it, in ascending order.
     kept: &'a [u32],
-    /// Whether so few rays ended that runs are long.
-    are_most: bool,
+    /// Their runs, if so few rays ended that these are long; otherwise empty.
+    runs: &'a [Range<usize>],
 }
 
 impl Living<'_> {
     /// Moves the values of a column together.
     #[inline(always)]
     fn close_up<T: Copy>(&self, column: &mut [T]) {
-        let mut to = self.first;
-        if self.are_most {
-            for run in self.kept.chunk_by(|a, b| a + 1 == *b) {
-                let from = run[0] as usize;
-                column.copy_within(from..from + run.len(), to);
-                to += run.len();
-            }
-        } else {
-            for (to, from) in (to..).zip(self.kept) {
+        if self.runs.is_empty() {
+            for (to, from) in (self.first..).zip(self.kept) {
                 column[to] = column[*from as usize];
             }
+        }
+        let mut to = self.first;
+        for run in self.runs {
+            column.copy_within(run.clone(), to);
+            to += run.len();
         }
     }
 }

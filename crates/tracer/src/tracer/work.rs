@@ -3,7 +3,7 @@
 use super::Tracer;
 use super::kernels::Evaluate;
 use crate::ledger::{Booked, Ledger};
-use crate::transmission::RaysBefore;
+use crate::transmission::{Passage, RaysBefore};
 use spectra_core::batch::Column;
 use spectra_core::surface::IndexColumns;
 use spectra_core::{LossCounts, RayBatch};
@@ -66,6 +66,9 @@ impl Tracer {
     #[must_use]
     pub fn work_for_light(&self, capacity: usize) -> Work {
         let work = self.work(capacity);
+        if !self.passages.iter().any(Passage::has_single_precision) {
+            return work;
+        }
         Work { before: work.before.map(|before| before.in_single_precision(capacity, self.media.len())), ..work }
     }
 

@@ -116,6 +116,17 @@ impl Passage {
         }
     }
 
+    /// Whether its layers can be computed in single precision.
+    pub(crate) fn has_single_precision(&self) -> bool {
+        match self {
+            Self::Coated(_, kernel) => {
+                matches!(kernel, Kernel::One(.., Some(_)) | Kernel::Two(.., Some(_)) | Kernel::Three(.., Some(_)))
+            }
+            Self::Apart(intact, _) => intact.has_single_precision(),
+            Self::All | Self::Mirror(_) => false,
+        }
+    }
+
     /// Whether the surface reflects light that should pass.
     pub(crate) fn reflects(&self) -> bool {
         matches!(self, Self::Coated(..) | Self::Apart(..))
