@@ -495,7 +495,7 @@ struct Living<'a> {
     first: usize,
     /// Indices of the living rays behind it, in ascending order.
     kept: &'a [u32],
-    /// Their runs, if so few rays ended that these are long; otherwise empty.
+    /// Runs of living rays, if so few rays ended that these are long; otherwise empty.
     runs: &'a [Range<usize>],
 }
 

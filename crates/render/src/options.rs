@@ -1,6 +1,5 @@
 //! How a renderer is made ready.
 
-use crate::Renderer;
 use spectra_core::Isa;
 use spectra_core::stage::WavelengthDensity;
 use spectra_core::workers::{SingleThread, Workers};
@@ -23,8 +22,6 @@ pub struct RenderOptions<'a> {
     pub traced: Traced,
     /// Whether the light itself is kept in a file that the scene does not name. `render.noise: auto` then ignores the grain.
     pub keeps_light: bool,
-    /// The renderer of an earlier picture. What it has found is taken over where it does not depend on what differs; the bits are the same.
-    pub earlier: Option<&'a Renderer>,
 }
 
 /// The light that a renderer traces.
@@ -59,7 +56,6 @@ impl Default for RenderOptions<'_> {
             workers: &SingleThread,
             traced: Traced::All,
             keeps_light: false,
-            earlier: None,
         }
     }
 }

@@ -53,14 +53,41 @@ impl Renderer {
     /// Returns a [`RenderError`] if a stage lacks an ability that the direction needs, if files of the source are broken, or if the workers
     /// are to stop meanwhile.
     pub fn new(scene: impl Into<Arc<Scene>>, options: &RenderOptions<'_>) -> Result<Self, RenderError> {
-        let scene = scene.into();
-        if let Some(known) = options.earlier.and_then(|earlier| earlier.for_picture(&scene, options)) {
-            return Ok(known);
+        Self::prepared(scene.into(), options, None)
+    }
+
+    /// Prepares another picture like [`Renderer::new`], with the same bits. What this renderer has found is taken over where it does not
+    /// depend on what differs between the pictures: everything if only their seeds and what follows the light differ, and the pupil that the
+    /// imager sees if their lens, imager and band are the same.
+    ///
+    /// # Errors
+    /// Returns the same errors as [`Renderer::new`].
+    pub fn for_picture(
+        &self,
+        picture: impl Into<Arc<Scene>>,
+        options: &RenderOptions<'_>,
+    ) -> Result<Self, RenderError> {
+        let picture = picture.into();
+        let is_same = options.isa == self.pipeline.isa
+            && options.effort == self.pipeline.effort
+            && options.traced == Traced::All
+            && self.scene.differs_in_seed_only(&picture);
+        if is_same {
+            let keeps_light = options.keeps_light || picture.names_light_output();
+            return Ok(Self { keeps_light, ..self.of_picture(picture) });
         }
+        Self::prepared(picture, options, Some(&self.pipeline))
+    }
+
+    fn prepared(
+        scene: Arc<Scene>,
+        options: &RenderOptions<'_>,
+        earlier: Option<&Pipeline>,
+    ) -> Result<Self, RenderError> {
         scene.source.prepare().map_err(RenderError::Source)?;
         let mut pipeline = Pipeline::new(&scene, options)?;
-        if let Some(earlier) = options.earlier {
-            pipeline.take_pupil(&earlier.pipeline);
+        if let Some(earlier) = earlier {
+            pipeline.take_pupil(earlier);
         }
         let pipeline = Arc::new(pipeline);
         let Estimators { all, ledger, has_lights } = Estimators::new(&pipeline, &options.traced, options.workers)?;
@@ -86,18 +113,6 @@ impl Renderer {
     #[must_use]
     pub fn reseeded(&self, seed: u64) -> Self {
         self.of_picture(Arc::new(self.scene.with_seed(seed)))
-    }
-
-    /// Returns a renderer for another picture, with the same bits as [`Renderer::new`], at next to no cost. `None` if more than its seed and
-    /// what follows the light differ, so that it must be prepared anew.
-    #[must_use]
-    pub fn for_picture(&self, picture: &Arc<Scene>, options: &RenderOptions<'_>) -> Option<Self> {
-        let is_same = options.isa == self.pipeline.isa
-            && options.effort == self.pipeline.effort
-            && options.traced == Traced::All
-            && self.scene.differs_in_seed_only(picture);
-        let keeps_light = options.keeps_light || picture.names_light_output();
-        is_same.then(|| Self { keeps_light, ..self.of_picture(Arc::clone(picture)) })
     }
 
     fn of_picture(&self, picture: Arc<Scene>) -> Self {

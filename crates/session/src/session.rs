@@ -141,10 +141,12 @@ impl Session {
             effort: self.options.effort,
             keeps_light: self.options.keeps_light,
             workers,
-            earlier: self.earlier.as_ref(),
             ..RenderOptions::default()
         };
-        let renderer = Renderer::new(Arc::clone(scene), &options)?;
+        let renderer = match &self.earlier {
+            Some(earlier) => earlier.for_picture(Arc::clone(scene), &options)?,
+            None => Renderer::new(Arc::clone(scene), &options)?,
+        };
         let light = renderer.begin()?;
         Ok((renderer, light))
     }
