@@ -90,7 +90,7 @@ impl Session {
 
     /// Returns the scene and its renderer, if it was prepared, and drops the rest.
     pub(crate) fn into_scene(self) -> (Arc<Scene>, Option<Renderer>) {
-        (self.scene, self.ready.map(|(renderer, _)| renderer))
+        (self.scene, self.ready.map(|(renderer, _)| renderer).or(self.earlier))
     }
 
     /// Returns the number, values and name of the picture in its series.
@@ -364,9 +364,11 @@ impl Session {
         Ok(kept)
     }
 
-    /// Frees the memory of the light.
+    /// Frees the memory of the light, and keeps the renderer for the next picture.
     pub(crate) fn forget_light(&mut self) {
-        self.ready = None;
+        if let Some((renderer, _)) = self.ready.take() {
+            self.earlier = Some(renderer);
+        }
     }
 
     /// Writes the light so far, for another process to continue.
@@ -402,5 +404,22 @@ impl Session {
         }
         *light = Light::load(renderer, from)?;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use spectra_plugins as _;
+
+    /// The next picture of a series gets the renderer of a picture whose light is no longer needed.
+    #[test]
+    fn the_renderer_outlives_the_light() {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/biotar-ortho.yaml");
+        let set = ["imager.resolution=[48, 32]".to_owned()];
+        let mut session = Session::open(&scene, &set, SessionOptions::default()).expect("a scene");
+        session.prepare(&SingleThread).expect("prepared");
+        session.forget_light();
+        assert!(!session.has_light() && session.into_scene().1.is_some());
     }
 }
