@@ -151,7 +151,8 @@ impl Scene {
         scene
     }
 
-    /// Returns whether light between the imager and the lens takes the same ways as in `other`: both have the same lens, imager and band.
+    /// Returns whether light between the imager and the lens takes the same ways as in `other`: both have the same lens, imager, band and
+    /// random numbers.
     #[must_use]
     pub fn has_the_view_of(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.lens, &other.lens)
@@ -159,6 +160,7 @@ impl Scene {
             && self.imager.size() == other.imager.size()
             && self.grid == other.grid
             && self.render.numbers == other.render.numbers
+            && self.render.samples == other.render.samples
     }
 
     /// Returns whether rays of `other` differ from those of this scene in their seed only: both share the stages up to the imager. Films

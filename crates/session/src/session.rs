@@ -121,7 +121,11 @@ impl Session {
             return Ok(());
         }
         match self.begin(&self.scene, self.density.clone(), workers) {
-            Ok(ready) => self.ready = Some(ready),
+            Ok(ready) => {
+                self.ready = Some(ready);
+                // What it shares with the new one is held by that one.
+                self.earlier = None;
+            }
             Err(RenderError::Stopped) => {}
             Err(error) => return Err(SessionError::of(&error, &self.scene)),
         }
